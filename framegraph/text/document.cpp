@@ -56,22 +56,23 @@ std::string Document::pointer(NodeId id) const {
   std::string out;
   for (auto at = path.rbegin(); at != path.rend(); ++at) {
     const Node& node = nodes[at->value];
-    out += '/';
-    if (nodes[node.parent.value].kind == NodeKind::array) {
-      out += fmt::format("{}", node.index);
-      continue;
-    }
-    for (char c : key(*at)) { // RFC 6901 section 3
-      if (c == '~') {
-        out += "~0";
-      } else if (c == '/') {
-        out += "~1";
-      } else {
-        out += c;
-      }
-    }
+    const bool in_array = nodes[node.parent.value].kind == NodeKind::array;
+    append_pointer_step(out, in_array ? fmt::to_string(node.index) : std::string(key(*at)));
   }
   return out;
+}
+
+void append_pointer_step(std::string& pointer, std::string_view key) {
+  pointer += '/';
+  for (const char c : key) { // RFC 6901 section 3
+    if (c == '~') {
+      pointer += "~0";
+    } else if (c == '/') {
+      pointer += "~1";
+    } else {
+      pointer += c;
+    }
+  }
 }
 
 SourceLocation Document::where(NodeId id) const {

@@ -57,6 +57,9 @@ struct Document {
   SourceLocation where_key(NodeId id) const; // of the key, or of the value if there is no key
 };
 
+// Appends one step to a JSON pointer.
+void append_pointer_step(std::string& pointer, std::string_view key);
+
 // Returns the location of byte `decoded` of string `id` in the text, accounting for escapes. `all`
 // holds the text.
 SourceLocation where_in_string(const Document& document, NodeId id, size_t decoded,

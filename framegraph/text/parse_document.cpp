@@ -94,29 +94,48 @@ public:
 
   bool failed() const { return failed_; }
 
+  // Returns the pointer of the value that the next characters belong to: of the member whose key
+  // was read, else of the open object or array.
+  std::string open_pointer() const {
+    if (open_.empty()) return {};
+    std::string pointer = document_.pointer(open_.back().node);
+    if (key_is_pending_)
+      append_pointer_step(pointer,
+                          std::string_view(document_.characters).substr(key_begin_, key_size_));
+    return pointer;
+  }
+  // Same, but in an array the pointer of its next element.
+  std::string value_pointer() const {
+    std::string pointer = open_pointer();
+    if (open_.empty()) return pointer;
+    const Node& inside = document_[open_.back().node];
+    if (inside.kind == NodeKind::array)
+      append_pointer_step(pointer, fmt::to_string(inside.child_count));
+    return pointer;
+  }
+
 private:
   struct Open {
     NodeId node, last_child;
   };
 
-  SourceLocation at(TextPosition position) const {
-    const std::string pointer =
-        open_.empty() ? std::string() : document_.pointer(open_.back().node);
-    return {document_.file, position.line, position.column, pointer};
-  }
-  bool reject(DiagnosticId id, TextPosition position, std::string text) {
-    diagnostics_.add(id, at(position), std::move(text));
+  bool reject(DiagnosticId id, TextPosition position, std::string text, std::string pointer) {
+    diagnostics_.add(id, {document_.file, position.line, position.column, std::move(pointer)},
+                     std::move(text));
     failed_ = true;
     return false;
   }
+  bool reject_value(DiagnosticId id, std::string text) {
+    return reject(id, cursor_.value_position(), std::move(text), value_pointer());
+  }
   bool reject_integer(std::string_view token) {
-    return reject(DiagnosticId::integer_precision, cursor_.value_position(),
-                  fmt::format("the integer {} does not fit in 64 signed bits", shown_token(token)));
+    return reject_value(
+        DiagnosticId::integer_precision,
+        fmt::format("the integer {} does not fit in 64 signed bits", shown_token(token)));
   }
   bool check_no_nul(std::string_view value) {
     if (value.find('\0') == std::string_view::npos) return true;
-    return reject(DiagnosticId::syntax, cursor_.value_position(),
-                  "strings may not contain \\u0000");
+    return reject_value(DiagnosticId::syntax, "strings may not contain \\u0000");
   }
   // Returns the last number as the file has it. The parser's copy of it, of equal size, has the
   // decimal point of the host's locale.
@@ -146,14 +165,15 @@ private:
   std::vector<Open> open_;
   TextPosition key_position_;
   uint32_t key_begin_ = 0, key_size_ = 0;
+  bool key_is_pending_ = false; // the key's value has not begun
   bool failed_ = false;
 };
 
 Node* NodeBuilder::add(NodeKind kind) {
   const TextPosition position = cursor_.value_position();
   if (document_.nodes.size() >= limits::nodes) {
-    reject(DiagnosticId::limit_exceeded, position,
-           fmt::format("the document has more than {} values", limits::nodes));
+    reject_value(DiagnosticId::limit_exceeded,
+                 fmt::format("the document has more than {} values", limits::nodes));
     return nullptr;
   }
   const NodeId id{static_cast<uint32_t>(document_.nodes.size())};
@@ -178,6 +198,7 @@ Node* NodeBuilder::add(NodeKind kind) {
     node.key_column = key_position_.column;
     node.key_begin = key_begin_;
     node.key_size = key_size_;
+    key_is_pending_ = false;
   }
   return &node;
 }
@@ -185,13 +206,14 @@ Node* NodeBuilder::add(NodeKind kind) {
 bool NodeBuilder::key(string_t& value) {
   key_position_ = cursor_.value_position();
   if (value.size() > limits::key_bytes) {
-    return reject(DiagnosticId::limit_exceeded, key_position_,
-                  fmt::format("this key has {} bytes; at most {} are allowed", value.size(),
-                              limits::key_bytes));
+    return reject_value(DiagnosticId::limit_exceeded,
+                        fmt::format("this key has {} bytes; at most {} are allowed", value.size(),
+                                    limits::key_bytes));
   }
   if (!check_no_nul(value)) return false;
   key_begin_ = keep(value);
   key_size_ = static_cast<uint32_t>(value.size());
+  key_is_pending_ = true;
   return true;
 }
 
@@ -233,9 +255,9 @@ bool NodeBuilder::parse_error(size_t position, const std::string& last_token,
   failed_ = true;
   if (cursor_.early_end() != EarlyEnd::none) return false; // the caller reports the limit
   if (exception.id == out_of_range_exception) {
-    return reject(DiagnosticId::out_of_range, cursor_.value_position(),
-                  fmt::format("the number {} is beyond the range of double precision",
-                              shown_token(number_text(last_token.size()))));
+    return reject_value(DiagnosticId::out_of_range,
+                        fmt::format("the number {} is beyond the range of double precision",
+                                    shown_token(number_text(last_token.size()))));
   }
   // Format: "[json.exception...] parse error at line L, column C: syntax error while parsing W -
   // what; last read: '...'"
@@ -270,16 +292,19 @@ bool NodeBuilder::parse_error(size_t position, const std::string& last_token,
   const size_t last = position == 0 ? 0 : position - 1;
   TextPosition place = locate(text_, last);
   if (unexpected && last < text_.size()) place = cursor_.token_position_before(position);
-  return reject(DiagnosticId::syntax, place,
-                fmt::format("malformed {}: {}",
-                            where_in_grammar.empty() ? "JSON" : where_in_grammar, reason));
+  return reject(
+      DiagnosticId::syntax, place,
+      fmt::format("malformed {}: {}", where_in_grammar.empty() ? "JSON" : where_in_grammar, reason),
+      open_pointer());
 }
 
 void report_early_end(const TextCursor& cursor, const Document& document,
-                      Diagnostics& diagnostics) {
+                      const NodeBuilder& builder, Diagnostics& diagnostics) {
   const TextPosition position = cursor.early_end_position();
-  const SourceLocation where{document.file, position.line, position.column, ""};
+  SourceLocation where{document.file, position.line, position.column, builder.open_pointer()};
   const auto limit = [&](std::string text) {
+    // An object or array that is nested too deep is open already; a string or number is not.
+    if (cursor.early_end() != EarlyEnd::deep_nesting) where.pointer = builder.value_pointer();
     diagnostics.add(DiagnosticId::limit_exceeded, where, std::move(text));
   };
   switch (cursor.early_end()) {
@@ -327,6 +352,11 @@ std::optional<Document> parse_document(std::string name, std::string text,
                     "this is a saved plan; `dermis plan` reads those");
     return std::nullopt;
   }
+  if (all.starts_with(byte_order_mark)) { // the JSON parser would ignore it
+    diagnostics.add(DiagnosticId::syntax, {document.file, 1, 1, ""},
+                    "the text begins with more than one byte order mark");
+    return std::nullopt;
+  }
   if (const size_t bad = find_invalid_utf8(all); bad != std::string_view::npos) {
     const TextPosition position = locate(all, bad);
     diagnostics.add(DiagnosticId::invalid_utf8, {document.file, position.line, position.column, ""},
@@ -346,7 +376,7 @@ std::optional<Document> parse_document(std::string name, std::string text,
     diagnostics.add(DiagnosticId::syntax, {document.file, 0, 0, ""},
                     fmt::format("the JSON parser failed: {}", exception.what()));
   }
-  report_early_end(cursor, document, diagnostics);
+  report_early_end(cursor, document, builder, diagnostics);
   if (!parsed || builder.failed() || cursor.early_end() != EarlyEnd::none || document.nodes.empty())
     return std::nullopt;
   return document;

@@ -91,6 +91,11 @@ TEST(Document, ByteOrderMarkIsNotPartOfTheFirstLine) {
   EXPECT_EQ(place(parsed.document->where({1})), "1:2");
 }
 
+TEST(Document, SecondByteOrderMarkIsRejected) {
+  expect_rejected("\xef\xbb\xbf\xef\xbb\xbf[7]", DiagnosticId::syntax, 1, 1, {"byte order mark"});
+  expect_rejected("[\xef\xbb\xbf 7]", DiagnosticId::syntax, 1, 2);
+}
+
 TEST(Document, APlaceInsideAStringIsFoundThroughEscapes) {
   const Parsed parsed = parse("[\n  \"a\\u00e9\\n\\ud83d\\ude00b\"]");
   ASSERT_TRUE(parsed.document) << all_messages(parsed.diagnostics);
@@ -151,6 +156,39 @@ INSTANTIATE_TEST_SUITE_P(
                       Malformed{"[\"\\ud800\"]", 1, 9}, Malformed{"[1, /* no */ 2]", 1, 6},
                       Malformed{"[NaN]", 1, 2}, Malformed{"[\"a\\u0000b\"]", 1, 2},
                       Malformed{"{\"\\u0000\": 1}", 1, 2}));
+
+TEST(Document, ErrorsInValuesHaveTheValuesPointer) {
+  using namespace std::string_literals;
+  const std::string number(limits::number_bytes + 1, '1'), text(limits::string_bytes + 1, 'x');
+  std::string nested = "{ \"a\": ", zeros;
+  for (size_t i = 1; i < limits::nesting; ++i)
+    zeros += "/0";
+  const struct {
+    std::string text, pointer;
+  } cases[] = {
+      {R"({ "a": [1, 99999999999999999999] })", "/a/1"},
+      {R"({ "a/b": { "c": 99999999999999999999 } })", "/a~1b/c"},
+      {R"({ "a": 1, "b~": "\u0000" })", "/b~0"},
+      {R"({ "a": { "\u0000": 1 } })", "/a"},
+      {R"({ "a": [1, 1e999] })", "/a/1"},
+      {R"({ "a": 1, "b": nul })", "/b"},
+      {R"({ "a": { "b": 1 "c": 2 } })", "/a"},
+      {R"({ "a": [1, ] })", "/a"},
+      {"{ \"a\": { \"b\": 1, \0 } }"s, "/a"},
+      {R"({ "a": { "b": /* no */ 1 } })", "/a/b"},
+      {R"({ "a": [1, /* no */ 1] })", "/a"},
+      {R"({ "a": [1, )" + number + "] }", "/a/1"},
+      {R"({ "a": { "b": ")" + text + "\" } }", "/a/b"},
+      {R"({ "a": { ")" + text + "\": 1 } }", "/a"},
+      {nested + std::string(limits::nesting, '['), "/a" + zeros},
+      {R"({ "a": 1, "a": 2 })", "/a"},
+  };
+  for (const auto& [text, pointer] : cases) {
+    const Parsed parsed = parse(text);
+    ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text.substr(0, 80);
+    EXPECT_EQ(parsed.diagnostics.list[0].where.pointer, pointer) << text.substr(0, 80);
+  }
+}
 
 TEST(Document, TextAfterANulByteIsNotIgnored) {
   using namespace std::string_literals;
