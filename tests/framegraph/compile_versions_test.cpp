@@ -317,6 +317,14 @@ TEST(Versions, ReaderSeesTheLatestEarlierVersion) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "copy_before brighten copy_after");
 }
 
+// Each pass may write a part of the host's image (docs/format.md).
+TEST(Versions, PassesMayWriteOneImportWithoutReading) {
+  GraphBuilder b{"in_out light", "import mask"};
+  b.pass("left", "test.need", {{"a", "mask"}}, {{"out", "light"}});
+  b.pass("right", "test.need", {{"a", "mask"}}, {{"out", "light"}});
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "left right");
+}
+
 TEST(Versions, ReaderMayPrecedeTheOnlyProducer) {
   GraphBuilder b{"import light", "image blurred", "export result"};
   b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
