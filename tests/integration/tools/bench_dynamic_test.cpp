@@ -258,5 +258,12 @@ TEST_F(BenchDynamicCommand, NeedsMoreFramesThanItSkips) {
               FailsWith(2, "flashing close has 20 frames"));
 }
 
+TEST_F(BenchDynamicCommand, UnknownNames_AreRejected) {
+  EXPECT_THAT(run({"bench", "dynamic", "--scenes", "flashing,flashin"}),
+              FailsWith(2, "--scenes: unknown 'flashin'; available: ", "flashing"));
+  EXPECT_THAT(run({"bench", "dynamic", "--framings", "close,far"}),
+              FailsWith(2, "--framings: unknown 'far'; available: close"));
+}
+
 } // namespace
 } // namespace dermis::test

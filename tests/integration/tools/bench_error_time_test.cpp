@@ -93,6 +93,14 @@ TEST_F(BenchErrorTime, NothingToMeasure_IsReported) {
   const std::string file = bench_file("");
   EXPECT_EQ(run({"bench", "error-time", "--file", file, "--scenes", "nowhere"}).exit_code, 2);
   EXPECT_EQ(run({"bench", "error-time", "--file", file, "--techniques", "none"}).exit_code, 2);
+  EXPECT_THAT(
+      run({"bench", "error-time", "--file", file, "--scenes", "edge,egde,disk"}),
+      FailsWith(2, "--scenes: unknown 'egde', 'disk'; available: edge, head, texture_plane"));
+  EXPECT_THAT(run({"bench", "error-time", "--file", file, "--techniques", "burley,burly"}),
+              FailsWith(2, "--techniques: unknown 'burly'; available: burley, separable"));
+  EXPECT_THAT(
+      run({"bench", "error-time", "--family", "--scenes", "plane,folds,judgin"}),
+      FailsWith(2, "--scenes: unknown 'folds', 'judgin'; available: ", "fold, ", "judging, "));
   EXPECT_EQ(run({"bench", "error-time", "--size", "0x3"}).exit_code, 2);
 }
 

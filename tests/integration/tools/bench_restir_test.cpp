@@ -193,7 +193,7 @@ TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
 
 TEST_F(BenchRestirWithRayQueries, MissingScene_LeavesNothingToMeasure) {
   EXPECT_THAT(run({"bench", "restir", "--quick", "--scenes", "none"}, with_rays()),
-              FailsWith(2, "no scene is selected; available: back_lit"));
+              FailsWith(2, "--scenes: unknown 'none'; available: back_lit"));
 }
 
 } // namespace

@@ -89,9 +89,16 @@ TEST_F(BenchStability, NewPixels_AreNotBrighterThanAllLight) {
 }
 
 TEST_F(BenchStability, UnknownNames_AreRejected) {
-  EXPECT_THAT(
-      run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"}),
-      FailsWith(2, "no case and technique has these names"));
+  const auto selected = [&](const char* techniques, const char* cases) {
+    return run(
+        {"bench", "stability", "--techniques", techniques, "--cases", cases, "--updates", "1000"});
+  };
+  EXPECT_THAT(selected("formula", "none,xi_0"),
+              FailsWith(2, "--cases: unknown 'none'; available: "));
+  EXPECT_THAT(selected("formula,sapp", "samples_in_a_tile"),
+              FailsWith(2, "--techniques: unknown 'sapp'; available: ", "sap, "));
+  EXPECT_THAT(selected("formula", "samples_in_a_tile"),
+              FailsWith(2, "none of these techniques runs one of these cases"));
 }
 
 } // namespace

@@ -236,6 +236,13 @@ demo::Result<> measure_dynamic(SuiteRun& run, const Emit<DynamicRow>& emit) {
   if (run.quick) quicken(file);
   auto techniques = select_techniques(run, file.techniques);
   if (!techniques) return techniques.error();
+  std::vector<std::string> scenes, framings;
+  for (const SequenceRequest& request : file.scenes) {
+    scenes.push_back(request.scene);
+    framings.push_back(request.framing);
+  }
+  if (auto good = check_names(run, "scenes", scenes); !good) return good;
+  if (auto good = check_names(run, "framings", framings); !good) return good;
   const auto host = run.open_device();
   if (!host) return host.error();
   DynamicBench bench{run, file, **host, techniques.take(),

@@ -6,6 +6,7 @@
 #include "integration/tools/command/bench/error_table/measured_rows.hpp"
 #include "integration/tools/command/bench/error_table/table_fit.hpp"
 #include "integration/tools/command/bench/family/family.hpp"
+#include "integration/tools/command/bench/family/selected_scenes.hpp"
 #include "integration/tools/command/bench/merged_profiles.hpp"
 #include "integration/tools/command/bench/still_error.hpp"
 #include "integration/tools/command/bench/suite/suites.hpp"
@@ -44,13 +45,6 @@ std::string table_row_name(const TechniqueRequest& request) {
   return request.setting.empty() ? request.technique : name_of(request);
 }
 
-bool is_selected(const ErrorTableBench& bench, const std::string& scene,
-                 const FamilyMember& member) {
-  return bench.run.is_requested("scenes", scene) ||
-         bench.run.is_requested("scenes", member.scene_class) ||
-         bench.run.is_requested("scenes", member.half);
-}
-
 // Adds the scene at every d of the table, or at its own d if it only judges.
 void add_family_scene(ErrorTableBench& bench, FamilyScene scene, const subsurface::Profile& skin) {
   const bool judging = scene.member.half == "judging";
@@ -68,13 +62,14 @@ void add_family(ErrorTableBench& bench, const subsurface::Profile& skin) {
   for (const FamilyScene& scene : bench.run.quick ? few_family_scenes() : family_scenes()) {
     // Pixels are square in most hosts, and all techniques follow their shape.
     if (scene.aspect != 1 || scene.member.scene_class == "square") continue;
-    if (!is_selected(bench, scene.name, scene.member)) continue;
+    if (!is_selected(bench.run, scene.name, scene.member)) continue;
     if (scene.member.half == "tuning" && !classes.insert(scene.member.scene_class).second) continue;
     add_family_scene(bench, scene, skin);
   }
 }
 
 demo::Result<> add_subjects(ErrorTableBench& bench) {
+  if (auto known = check_scenes(bench.run, bench.file.scenes, true); !known) return known;
   Diagnostics diagnostics;
   const auto document = read_document(bench.file.skin, diagnostics);
   const auto skin = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;
@@ -82,7 +77,7 @@ demo::Result<> add_subjects(ErrorTableBench& bench) {
   add_family(bench, *skin);
   for (const SceneRequest& scene : bench.file.scenes) {
     if (interrupted()) return stopped();
-    if (bench.run.quick || !is_selected(bench, scene.scene, scene.member)) continue;
+    if (bench.run.quick || !is_selected(bench.run, scene.scene, scene.member)) continue;
     auto subject = render_subject(scene, {family_width, family_height, {}});
     if (!subject) return subject.error();
     bench.subjects.push_back(subject.take());

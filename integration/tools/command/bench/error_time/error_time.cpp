@@ -317,6 +317,7 @@ demo::Result<> measure_error_time(SuiteRun& run, const Emit<ErrorTimeRow>& emit)
     file.subset = std::min(file.subset, quick_subset);
     file.self_scenes.clear();
   }
+  if (auto known = check_techniques(run, file.techniques); !known) return known;
   const auto host = run.open_device();
   if (!host) return host.error();
   const bool small = file.family && !run.quick;

@@ -2,6 +2,7 @@
 
 #include "integration/tools/command/bench/error_time/error_time_bench.hpp"
 #include "integration/tools/command/bench/family/family.hpp"
+#include "integration/tools/command/bench/family/selected_scenes.hpp"
 #include "integration/tools/command/bench/merged_profiles.hpp"
 #include "integration/tools/command/interrupt.hpp"
 
@@ -16,20 +17,12 @@ std::string why_not(const ErrorTimeBench& bench, const SceneRequest& scene) {
   return scene.model ? why_no_head(bench.run.text("head")) : "";
 }
 
-// Returns whether --scenes requests a scene by its name, class or half.
-bool is_selected(const ErrorTimeBench& bench, const std::string& scene,
-                 const FamilyMember& member) {
-  return bench.run.is_requested("scenes", scene) ||
-         bench.run.is_requested("scenes", member.scene_class) ||
-         bench.run.is_requested("scenes", member.half);
-}
-
 // Numbers count all scenes, selected or not, so that pictures keep their numbers.
 void add_family(ErrorTimeBench& bench, size_t& number, const SubjectOptions& options,
                 const subsurface::Profile& skin) {
   for (const FamilyScene& scene : bench.run.quick ? few_family_scenes() : family_scenes()) {
     const size_t own = number++;
-    if (!is_selected(bench, scene.name, scene.member)) continue;
+    if (!is_selected(bench.run, scene.name, scene.member)) continue;
     bench.subjects.push_back({scene.name, scene.parameters(),
                               generate_family_scene(scene, options.width, options.height, skin),
                               scene.d_px, scene.member, own});
@@ -40,7 +33,7 @@ demo::Result<> add_scene(ErrorTimeBench& bench, size_t& number, const SceneReque
                          const SubjectOptions& options, const subsurface::Profile& skin) {
   const size_t first = number;
   number += scene.file.empty() ? scene.d_px.size() : 1;
-  if (!is_selected(bench, scene.scene, scene.member)) return demo::success();
+  if (!is_selected(bench.run, scene.scene, scene.member)) return demo::success();
   if (!scene.file.empty()) {
     auto subject = render_subject(scene, options);
     if (!subject) return subject.error();
@@ -60,6 +53,8 @@ demo::Result<> add_scene(ErrorTimeBench& bench, size_t& number, const SceneReque
 } // namespace
 
 demo::Result<> add_subjects(ErrorTimeBench& bench) {
+  if (auto known = check_scenes(bench.run, bench.file.scenes, bench.file.family); !known)
+    return known;
   Diagnostics diagnostics;
   const auto document = read_document(bench.file.skin, diagnostics);
   const auto skin = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;

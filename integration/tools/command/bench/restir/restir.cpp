@@ -198,6 +198,10 @@ demo::Result<> measure_restir(SuiteRun& run, const Emit<RestirRow>& emit) {
   auto read = run.read(read_restir);
   if (!read) return read.error();
   RestirFile file = read.take();
+  std::vector<std::string> known;
+  for (const SceneRequest& scene : file.scenes)
+    known.push_back(scene.scene);
+  if (auto good = check_names(run, "scenes", known); !good) return good;
   if (run.quick) quicken(file);
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> loaded = load_graph(file.graph, {}, diagnostics);
@@ -208,6 +212,10 @@ demo::Result<> measure_restir(SuiteRun& run, const Emit<RestirRow>& emit) {
   bench.subject_options = {run.size().width, run.size().height, head_model(run.text("head"))};
   const std::vector<RestirVariant> variants = variants_of(loaded->graph);
   bench.reuses = variants.size() > 1;
+  std::vector<std::string> shifts;
+  for (const RestirVariant& variant : variants)
+    if (!variant.shift.empty()) shifts.push_back(variant.shift);
+  if (auto good = check_names(run, "shifts", shifts); bench.reuses && !good) return good;
   for (const RestirVariant& variant : variants)
     if (variant.shift.empty() || run.is_requested("shifts", variant.shift))
       bench.variants.push_back(variant);

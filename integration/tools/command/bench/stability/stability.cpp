@@ -23,14 +23,13 @@ std::optional<Techniques> read_techniques(const std::string& path, Diagnostics& 
       });
 }
 
-std::vector<StabilityCase> requested_cases(const SuiteRun& run) {
-  std::vector<StabilityCase> requested;
-  for (const auto& list : {light_cases(), shape_cases(), depth_cases(), tile_cases(), time_cases(),
-                           motion_cases(), guidance_cases(), random_cases()})
-    for (const StabilityCase& one : list)
-      if (run.is_requested("cases", one.name) && !(run.quick && one.large))
-        requested.push_back(one);
-  return requested;
+std::vector<StabilityCase> all_cases() {
+  std::vector<StabilityCase> all;
+  for (auto& list : std::array{light_cases(), shape_cases(), depth_cases(), tile_cases(),
+                               time_cases(), motion_cases(), guidance_cases(), random_cases()})
+    for (StabilityCase& one : list)
+      all.push_back(std::move(one));
+  return all;
 }
 
 // Formats one line per case with the worst technique, and every failing row.
@@ -65,21 +64,41 @@ std::string summary_of(const std::vector<StabilityRow>& rows) {
   return text;
 }
 
+// Returns the usage error if --cases or --techniques has an unknown name.
+demo::Result<> check_known(const SuiteRun& run, const Techniques& techniques,
+                           const std::vector<StabilityCase>& cases,
+                           const std::vector<StabilityRow>& formulas) {
+  std::vector<std::string> case_names, technique_names;
+  for (const TechniqueRequest& one : techniques)
+    technique_names.push_back(one.technique);
+  for (const StabilityCase& one : cases)
+    case_names.emplace_back(one.name);
+  for (const StabilityRow& row : formulas) {
+    case_names.push_back(row.name);
+    technique_names.push_back(row.technique);
+  }
+  if (auto known = check_names(run, "cases", std::move(case_names)); !known) return known;
+  return check_names(run, "techniques", std::move(technique_names));
+}
+
 demo::Result<> measure_stability(SuiteRun& run, const Emit<StabilityRow>& emit) {
   auto read = run.read(read_techniques);
   if (!read) return read.error();
   Techniques techniques = read.take();
+  std::vector<StabilityCase> cases = all_cases();
+  std::vector<StabilityRow> rows = formula_rows(), moving = moving_rows(run.number("updates"));
+  rows.insert(rows.end(), moving.begin(), moving.end());
+  if (auto known = check_known(run, techniques, cases, rows); !known) return known;
   if (run.quick && run.list("techniques").empty()) keep_few(techniques);
   std::erase_if(techniques, [&](const TechniqueRequest& one) { return !is_usable(run, one); });
+  std::erase_if(cases, [&](const StabilityCase& one) {
+    return !run.is_requested("cases", one.name) || (run.quick && one.large);
+  });
+  std::erase_if(rows, [&](const StabilityRow& row) {
+    return !run.is_requested("cases", row.name) || !run.is_requested("techniques", row.technique);
+  });
   const auto host = run.open_device();
   if (!host) return host.error();
-  std::vector<StabilityRow> rows;
-  for (std::vector<StabilityRow>& list :
-       std::array{formula_rows(), moving_rows(run.number("updates"))})
-    for (StabilityRow& row : list)
-      if (run.is_requested("cases", row.name) && run.is_requested("techniques", row.technique))
-        rows.push_back(std::move(row));
-  const std::vector<StabilityCase> cases = requested_cases(run);
   const std::vector<CaptureProfile> profiles = stability_profiles();
   // A graph that cannot be used ends the bench before anything is measured.
   for (const TechniqueRequest& request : techniques) {
@@ -106,7 +125,7 @@ demo::Result<> measure_stability(SuiteRun& run, const Emit<StabilityRow>& emit) 
     }
   }
   if (rows.empty())
-    return demo::Error{demo::ErrorKind::usage, "no case and technique has these names"};
+    return demo::Error{demo::ErrorKind::usage, "none of these techniques runs one of these cases"};
   for (const StabilityRow& row : rows)
     emit(row);
   run.report.text = summary_of(rows);

@@ -32,4 +32,18 @@ demo::Error none_selected(std::string_view kind, std::vector<std::string> known)
           fmt::format("no {} is selected; available: {}", kind, format_list(known))};
 }
 
+demo::Result<> check_names(const SuiteRun& run, const std::string& option,
+                           std::vector<std::string> known, std::vector<std::string> listed) {
+  std::vector<std::string> unknown;
+  for (const std::string& name : run.list(option))
+    if (std::ranges::find(known, name) == known.end()) unknown.push_back("'" + name + "'");
+  if (unknown.empty()) return demo::success();
+  if (listed.empty()) listed = std::move(known);
+  std::sort(listed.begin(), listed.end());
+  listed.erase(std::unique(listed.begin(), listed.end()), listed.end());
+  return demo::Error{demo::ErrorKind::usage,
+                     fmt::format("--{}: unknown {}; available: {}", option, format_list(unknown),
+                                 format_list(listed))};
+}
+
 } // namespace dermis::tools

@@ -20,6 +20,11 @@ bool is_one_of_few(std::string_view technique);
 // The usage error that lists what a file offers; `kind` is "technique" or "scene".
 demo::Error none_selected(std::string_view kind, std::vector<std::string> known);
 
+// Returns the usage error if a name of the option --`option` is not among `known`. The error lists
+// `listed`, or `known` if it is empty.
+demo::Result<> check_names(const SuiteRun& run, const std::string& option,
+                           std::vector<std::string> known, std::vector<std::string> listed = {});
+
 // Keeps the first setting of some techniques, for --quick.
 template <class Request> void keep_few(std::vector<Request>& all) {
   std::set<std::string> seen;
@@ -28,12 +33,22 @@ template <class Request> void keep_few(std::vector<Request>& all) {
   });
 }
 
-// Returns the usable techniques. Errors: usage (there is none).
+// Returns the usage error if --techniques has an unknown name.
+template <class Request>
+demo::Result<> check_techniques(const SuiteRun& run, const std::vector<Request>& all) {
+  std::vector<std::string> known;
+  for (const Request& one : all)
+    known.push_back(one.technique);
+  return check_names(run, "techniques", std::move(known));
+}
+
+// Returns the usable techniques. Errors: usage (there is none, or a name is unknown).
 template <class Request>
 demo::Result<std::vector<Request>> select_techniques(SuiteRun& run,
                                                      const std::vector<Request>& all) {
   std::vector<Request> selected;
   std::vector<std::string> known;
+  if (auto good = check_techniques(run, all); !good) return good.error();
   for (const Request& one : all) {
     known.push_back(one.technique);
     if (is_usable(run, one)) selected.push_back(one);
