@@ -50,6 +50,27 @@ TEST_F(View, InvalidReport_IsRejectedWithItsPlace) {
   EXPECT_THAT(files(), ElementsAre("report.json"));
 }
 
+TEST_F(View, ReportOfAnotherGraph_IsRejected) {
+  const auto page = [&](const char* size) {
+    return run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame",
+                path("report.json"), "--size", size});
+  };
+  const std::string head = R"({ "graph": "my.json", "width": 640, "height": 360, "passes": [)"
+                           "\n";
+  write("report.json", head + R"({ "pass": "scatter", "milliseconds": 1 },
+    { "pass": "up_3", "milliseconds": 2 } ] })");
+  EXPECT_THAT(page("640x360"), FailsWith(1, "report.json:3:15",
+                                         "report is of another graph ('my.json'): 'burley' "
+                                         "has no pass 'up_3'"));
+  EXPECT_THAT(files(), ElementsAre("report.json"));
+  write("report.json", head + R"({ "pass": "scatter", "milliseconds": 1 } ] })");
+  const Outcome other_size = page("320x180");
+  EXPECT_THAT(other_size, Succeeds());
+  EXPECT_THAT(other_size.err, HasSubstr("the report is of 640x360 pixels, the page shows plans "
+                                        "for 320x180"));
+  EXPECT_THAT(page("640x360").err, IsEmpty());
+}
+
 TEST_F(View, GraphWithErrors_HasNoPage) {
   const std::string graph =
       write("broken.json", R"({ "dermis": 2, "name": "broken", "passes": 3 })");

@@ -7,6 +7,7 @@
 #include "integration/tools/command/output.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 namespace dermis::tools {
 namespace {
@@ -19,6 +20,7 @@ ExitCode write_view(const Session& session, const GraphOptions& options, const L
   if (view.page.empty())
     return fail_graph(session, view.bad_file.empty() ? options.graph : view.bad_file, diagnostics);
   print_beside_document(session, diagnostics);
+  if (!view.warning.empty()) spdlog::warn("{}", for_terminal(view.warning));
   const std::string problem = deliver_page(options.html, view.page);
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   if (options.html != "-")

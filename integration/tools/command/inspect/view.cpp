@@ -2,12 +2,14 @@
 
 #include "framegraph/explain/plan_json.hpp"
 #include "framegraph/text/json_writer.hpp"
+#include "framegraph/text/reader.hpp"
 #include "integration/tools/command/bench/report/html.hpp"
 #include "integration/tools/files/zlib.hpp"
 #include "integration/tools/viewer/viewer.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 namespace dermis::tools {
@@ -124,6 +126,44 @@ bool check_report(const Document& report, Diagnostics& diagnostics) {
                     "expected the output of 'dermis render --json': \"passes\", each with \"pass\" "
                     "and \"milliseconds\"");
   return whole;
+}
+
+// Returns " ('FILE')", the graph's file as the report names it, or "".
+std::string graph_of(const Document& report) {
+  const NodeId graph = report.find(report.root(), "graph");
+  return graph.valid() && report[graph].kind == NodeKind::string
+             ? fmt::format(" ('{}')", report.text(graph))
+             : "";
+}
+
+// Returns whether the graph has all passes of the report.
+bool has_passes(const Graph& graph, const Document& report, Diagnostics& diagnostics) {
+  for (const NodeId pass : children(report, report.find(report.root(), "passes"))) {
+    const NodeId name = report.find(pass, "pass");
+    if (std::ranges::find(graph.passes, report.text(name), &PassDeclaration::name) !=
+        graph.passes.end())
+      continue;
+    diagnostics.add(DiagnosticId::unknown_pass, report.where(name),
+                    fmt::format("the report is of another graph{}: '{}' has no pass '{}'",
+                                graph_of(report), graph.name, report.text(name)));
+    return false;
+  }
+  return true;
+}
+
+// Names the size of the report if the page shows plans of another size.
+std::string other_size(const Document& report, const ViewOptions& options) {
+  const NodeId width = report.find(report.root(), "width"),
+               height = report.find(report.root(), "height");
+  if (!width.valid() || !height.valid() ||
+      (report[width].integer == options.size.width &&
+       report[height].integer == options.size.height))
+    return "";
+  return fmt::format("{}: the report is of {}x{} pixels, the page shows plans for {}x{}; "
+                     "--size {}x{} shows those of the report",
+                     options.frame, report[width].integer, report[height].integer,
+                     options.size.width, options.size.height, report[width].integer,
+                     report[height].integer);
 }
 
 struct View {
@@ -245,7 +285,9 @@ ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options,
   const size_t files = diagnostics.files.size(); // the report is not a file of the graph
   if (!options.frame.empty()) {
     report = read_document(options.frame, diagnostics);
-    if (!report || !check_report(*report, diagnostics)) return {"", "", options.frame};
+    if (!report || !check_report(*report, diagnostics) ||
+        !has_passes(loaded.graph, *report, diagnostics))
+      return {"", "", options.frame};
   }
   const std::vector<SourceFile> all = diagnostics.files;
   diagnostics.files.resize(files);
@@ -265,6 +307,7 @@ ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options,
       zlib_deflate({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
   if (packed.empty()) return {"", "out of memory"};
   ViewAnswer answer;
+  if (report) answer.warning = other_size(*report, options);
   for (const std::string_view piece : page.before)
     answer.page += piece;
   answer.page += base64(packed);

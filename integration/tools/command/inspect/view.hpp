@@ -21,6 +21,7 @@ struct ViewAnswer {
   std::string page;          // "" with errors in the diagnostics or a `problem`
   std::string problem;       // a problem of the environment
   std::string bad_file = {}; // with errors, if they are not the graph's
+  std::string warning = {};  // difference of the report from the page; "": none
 };
 
 // Builds the page. Switchable settings are the choices by budget, then booleans and enumerations,
