@@ -11,18 +11,22 @@ Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_
   std::error_code problem;
   const auto status = std::filesystem::status(path, problem);
   if (problem || !std::filesystem::exists(status))
-    return Error{ErrorKind::input, fmt::format("{}: there is no such file", path)};
+    return Error{ErrorKind::input, fmt::format("{}: the file does not exist", path)};
   if (!std::filesystem::is_regular_file(status))
-    return Error{ErrorKind::input, fmt::format("{}: this is not a regular file", path)};
+    return Error{ErrorKind::input, fmt::format("{}: not a regular file", path)};
   const uint64_t size = std::filesystem::file_size(path, problem);
-  if (problem) return Error{ErrorKind::input, fmt::format("{}: {}", path, problem.message())};
+  if (problem)
+    return Error{ErrorKind::input,
+                 fmt::format("{}: cannot read the file: {}", path, problem.message())};
   if (size > maximum)
     return Error{ErrorKind::input, fmt::format("{}: the file has {} bytes; at most {} are read",
                                                path, size, maximum)};
   std::ifstream stream(path, std::ios::binary);
   std::vector<std::byte> bytes(size);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!stream) return Error{ErrorKind::input, fmt::format("{}: the file cannot be read", path)};
+  if (!stream)
+    return Error{ErrorKind::input,
+                 fmt::format("{}: the file cannot be opened or read to its end", path)};
   return bytes;
 }
 

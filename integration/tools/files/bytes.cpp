@@ -40,21 +40,22 @@ std::optional<std::vector<uint8_t>> read_bytes(const fs::path& path, uint64_t li
                                                std::string& error) {
   std::error_code code;
   if (!fs::is_regular_file(path, code)) {
-    error = fmt::format("'{}' {}", path.string(),
-                        fs::exists(path, code) ? "is not a regular file" : "does not exist");
+    error = fmt::format("{}: {}", path.string(),
+                        fs::exists(path, code) ? "not a regular file" : "the file does not exist");
     return std::nullopt;
   }
   const uint64_t size = fs::file_size(path, code);
   if (code || size > limit) {
-    error = code
-                ? fmt::format("the size of '{}' cannot be read: {}", path.string(), code.message())
-                : fmt::format("'{}' has {} bytes; at most {} are read", path.string(), size, limit);
+    error = code ? fmt::format("{}: cannot read the file: {}", path.string(), code.message())
+                 : fmt::format("{}: the file has {} bytes; at most {} are read", path.string(),
+                               size, limit);
     return std::nullopt;
   }
   const File file(std::fopen(path.c_str(), "rb"));
   std::vector<uint8_t> bytes(size);
   if (!file || std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
-    error = fmt::format("'{}' cannot be read: {}", path.string(), last_error());
+    error = fmt::format("{}: the file cannot be opened or read to its end: {}", path.string(),
+                        last_error());
     return std::nullopt;
   }
   return bytes;

@@ -35,9 +35,6 @@ inline constexpr float max_light = 65504;
 struct SanitisedCounts {
   uint64_t not_finite = 0; // NaN or infinite, set to 0
   uint64_t negative = 0;   // negative light, depth, albedo or scatter_scale, set to 0
-  // pixels with light above max_light; the value is kept and graphs clamp it
-  uint64_t too_bright = 0;
-  float brightest = 0; // the largest value above max_light
 };
 
 // Contents of frame.json.

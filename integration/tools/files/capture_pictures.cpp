@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace dermis::tools {
 
@@ -38,15 +39,29 @@ std::optional<Image> read_sized(const fs::path& path, const std::vector<ChannelN
   return image;
 }
 
+// Warns of values of subsurface pixels that are replaced by 0.
+void warn_of_replaced(const fs::path& path, const SanitisedCounts& of_image,
+                      const Document& document, SanitisedCounts& all, Diagnostics& diagnostics) {
+  all.not_finite += of_image.not_finite;
+  all.negative += of_image.negative;
+  if (of_image.not_finite + of_image.negative > 0)
+    diagnostics.add(
+        DiagnosticId::capture_sanitised, document.where(document.root()),
+        fmt::format("'{}': {} values of subsurface pixels were not finite and {} negative; they "
+                    "count as 0",
+                    path.string(), of_image.not_finite, of_image.negative));
+}
+
 // Converts ids to bytes. A value that is not a whole number from 0 to 255 is an error, since no
 // rounding is safe; NaN becomes 0.
 void take_profile_ids(const Image& image, const fs::path& path, const Document& document,
                       CapturedFrame& frame, Diagnostics& diagnostics) {
+  SanitisedCounts replaced;
   frame.profile.resize(image.values.size());
   for (size_t i = 0; i < image.values.size(); ++i) {
     float value = image.values[i];
     if (std::isnan(value)) {
-      ++frame.sanitised.not_finite;
+      ++replaced.not_finite;
       value = 0;
     }
     if (value < 0 || value > 255 || value != std::floor(value)) {
@@ -58,6 +73,7 @@ void take_profile_ids(const Image& image, const fs::path& path, const Document& 
     }
     frame.profile[i] = static_cast<uint8_t>(value);
   }
+  warn_of_replaced(path, replaced, document, frame.sanitised, diagnostics);
 }
 
 void check_profiles_known(const Document& document, const CapturedFrame& frame,
@@ -89,16 +105,23 @@ void refine_tiles(Image& image, bool signed_values, const std::vector<uint8_t>& 
   }
 }
 
-// Counts pixels with a profile whose light exceeds max_light.
-void count_too_bright(const CapturedFrame& frame, SanitisedCounts& counts) {
-  for (size_t i = 0; i < frame.profile.size(); ++i) {
-    float brightest = 0;
-    for (const Image* light : {&frame.lighting, &frame.back_lighting})
-      for (size_t c = 0; c < 3 && frame.profile[i] != 0 && !light->values.empty(); ++c)
-        brightest = std::max(brightest, light->values[3 * i + c]);
-    if (brightest > max_light) ++counts.too_bright;
-    counts.brightest = std::max(counts.brightest, brightest > max_light ? brightest : 0);
+// Warns of light of subsurface pixels above max_light, which keeps its value.
+void warn_of_bright(const fs::path& path, const Image& light, const std::vector<uint8_t>& profile,
+                    const Document& document, Diagnostics& diagnostics) {
+  uint64_t pixels = 0;
+  float brightest = 0;
+  for (size_t i = 0; i < profile.size() && !light.values.empty(); ++i) {
+    const auto pixel = std::span(light.values).subspan(3 * i, 3);
+    const float own = profile[i] != 0 ? std::ranges::max(pixel) : 0;
+    if (own > max_light) ++pixels;
+    brightest = std::max(brightest, own);
   }
+  if (pixels > 0)
+    diagnostics.add(DiagnosticId::capture_sanitised, document.where(document.root()),
+                    fmt::format("'{}': light of {} subsurface pixels is above {}, at most {}; "
+                                "graphs clamp it to {}: scale the light down before it is captured "
+                                "(pre-exposure)",
+                                path.string(), pixels, max_light, brightest, max_light));
 }
 
 } // namespace
@@ -142,7 +165,9 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
     auto image =
         read_sized(path, kind.channels, document, frame.description, readable, diagnostics);
     if (!image || !ids) continue;
-    refine_tiles(*image, kind.signed_values, frame.profile, frame.sanitised);
+    SanitisedCounts replaced;
+    refine_tiles(*image, kind.signed_values, frame.profile, replaced);
+    warn_of_replaced(path, replaced, document, frame.sanitised, diagnostics);
     frame.*kind.image = std::move(*image);
   }
   std::error_code code;
@@ -153,20 +178,9 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
         fmt::format(
             "'thickness.exr' and 'back_lighting.exr' are only valid together; '{}' is missing",
             (folder / (thickness ? "back_lighting.exr" : "thickness.exr")).string()));
-  count_too_bright(frame, frame.sanitised);
-  const SanitisedCounts& counts = frame.sanitised;
-  if (counts.not_finite + counts.negative > 0)
-    diagnostics.add(
-        DiagnosticId::capture_sanitised, document.where(document.root()),
-        fmt::format(
-            "{} values of subsurface pixels were not finite and {} negative; they count as 0",
-            counts.not_finite, counts.negative));
-  if (counts.too_bright > 0)
-    diagnostics.add(DiagnosticId::capture_sanitised, document.where(document.root()),
-                    fmt::format("light of {} subsurface pixels is above {}, at most {}; graphs "
-                                "clamp it to {}: scale the "
-                                "light down before it is captured (pre-exposure)",
-                                counts.too_bright, max_light, counts.brightest, max_light));
+  warn_of_bright(folder / "lighting.exr", frame.lighting, frame.profile, document, diagnostics);
+  warn_of_bright(folder / "back_lighting.exr", frame.back_lighting, frame.profile, document,
+                 diagnostics);
 }
 
 } // namespace dermis::tools

@@ -82,7 +82,7 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
   std::error_code ignored;
   for (const std::string& path : {a, b})
     if (!fs::exists(path, ignored)) {
-      problem = fmt::format("'{}' does not exist", path);
+      problem = fmt::format("{}: the file does not exist", path);
       return {};
     }
   const bool folder = fs::is_directory(a, ignored);

@@ -85,7 +85,8 @@ TEST_F(ModelFile, NotAGltf_IsReported) {
   EXPECT_THAT(rejected(only(write("empty.glb", ""))).text, HasSubstr("not a glTF file"));
   EXPECT_THAT(rejected(only(write("short.glb", "glTF\x02"))).text, HasSubstr("damaged"));
   EXPECT_THAT(rejected(only(write("bad.gltf", "{ \"asset\": "))).text, HasSubstr("damaged"));
-  EXPECT_THAT(rejected(only((folder / "absent.glb").string())).text, HasSubstr("no such file"));
+  EXPECT_THAT(rejected(only((folder / "absent.glb").string())).text,
+              HasSubstr("the file does not exist"));
   EXPECT_THAT(rejected(only(folder.path().string())).text, HasSubstr("not a regular file"));
 }
 
