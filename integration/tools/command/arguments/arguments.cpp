@@ -55,6 +55,24 @@ bool has_empty_entry(const CLI::Option& option, std::string_view list) {
           list.find(std::string(2, separator)) != std::string_view::npos);
 }
 
+// Returns whether the argument names an option of the verb. "--" and "-" name none.
+bool is_option(const CLI::App& verb, std::string_view argument) {
+  const bool is_short = argument.size() == 2 && argument[0] == '-' && argument[1] != '-';
+  return (is_short || (argument.starts_with("--") && argument.size() > 2)) &&
+         verb.get_option_no_throw(std::string(name_part(argument))) != nullptr;
+}
+
+// Returns the problem if an option without its value precedes another option. CLI11 takes the name
+// of the latter as the value.
+std::string find_missing_value(const CLI::App& verb, std::string_view name,
+                               std::string_view following) {
+  const CLI::Option* option = verb.get_option_no_throw(std::string(name));
+  if (option == nullptr || option->get_expected_max() == 0 || !is_option(verb, following))
+    return "";
+  return fmt::format("{0}: the value is missing; '{1}' is an option. Use '{2}={1}' for this value",
+                     name, following, option->get_name());
+}
+
 // Reports a missing verb, a misspelt verb or option, and an empty entry of a list before CLI11
 // reports missing options. Returns "" if all are known.
 std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
@@ -75,6 +93,8 @@ std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
   }
   for (int i = options_from; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string name(name_part(argv[i]));
+    if (is_option(*verb, argv[i]) && name == argv[i] && i + 1 < argc)
+      if (problem = find_missing_value(*verb, name, argv[i + 1]); !problem.empty()) return problem;
     if (!name.starts_with("--")) continue;
     if (const CLI::Option* option = verb->get_option_no_throw(name)) {
       const std::string_view argument(argv[i]);
@@ -136,7 +156,8 @@ Invocation read_arguments(int argc, const char* const* argv) {
       "Example:\n"
       "  dermis render configs/scenes/bust.json --graph configs/graphs/sap.json --out out/\n\n"
       "Exit codes: 0 success; 1 the input has problems; 2 bad option or value; 3 no driver,\n"
-      "unwritable output or missing package; 4 a defect of the program; 130 stopped by Ctrl-C.");
+      "unwritable output or missing package; 4 a defect of the program; 130 stopped by Ctrl-C;\n"
+      "141 the reader of standard output ended first, such as head.");
   add_text_verbs(app, invocation);
   add_plan_verbs(app, invocation);
   add_schema_verb(app, invocation);
@@ -160,9 +181,11 @@ Invocation read_arguments(int argc, const char* const* argv) {
       invocation.message = fmt::format("{}: the value is empty; 'dermis {} --help' describes it",
                                        option, verb_of(app));
       invocation.run = nullptr;
-    } else if (std::string lost = find_lost_file(app); !lost.empty()) {
-      invocation.message = std::move(lost);
-      invocation.run = nullptr;
+    } else {
+      const std::string verb = verb_of(app);
+      invocation.message = find_lost_file(app, verb);
+      if (invocation.message.empty()) invocation.message = find_foreign_file(app, verb);
+      if (!invocation.message.empty()) invocation.run = nullptr;
     }
   } catch (const CLI::CallForHelp&) {
     invocation.help = app.help(); // of the selected verb, with its full name

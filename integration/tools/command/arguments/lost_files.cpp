@@ -1,5 +1,7 @@
 #include "integration/tools/command/arguments/lost_files.hpp"
 
+#include "integration/tools/command/output_kind.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array outputs{"out",   "capture", "trace", "heat", "flip-map", "html",
-                             "sarif", "junit",   "json",  "csv",  "assembly"};
+                             "sarif", "junit",   "json",  "csv",  "assembly", "write-captures"};
 
 struct Path {
   const CLI::Option* option;
@@ -50,29 +52,48 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return a == b || fs::equivalent(a, b, ignored);
 }
 
-// Returns whether the file has a name of the pictures that are written to the folder.
-bool is_picture_of(const Path& folder, const Path& file) {
-  return folder.option->check_lname("out") && file.absolute.parent_path() == folder.absolute &&
-         file.absolute.filename().string().starts_with("frame_");
+// Returns whether the verb writes a file of this path into the folder.
+bool is_written_into(const Path& folder, const Path& file, std::string_view verb) {
+  return folder.option->check_lname("out") && is_within(file.absolute, folder.absolute) &&
+         is_name_of_output(verb,
+                           file.absolute.lexically_relative(folder.absolute).generic_string());
 }
 
 // Returns whether writing one output destroys the other. A capture replaces its folder.
-bool overlap(const Path& a, const Path& b) {
-  if (is_picture_of(a, b) || is_picture_of(b, a)) return true;
+bool overlap(const Path& a, const Path& b, std::string_view verb) {
+  if (is_written_into(a, b, verb) || is_written_into(b, a, verb)) return true;
   const bool folders = (a.option->check_lname("out") && b.option->check_lname("capture")) ||
                        (a.option->check_lname("capture") && b.option->check_lname("out"));
   return same_file(a.absolute, b.absolute) ||
          (folders && (is_within(a.absolute, b.absolute) || is_within(b.absolute, a.absolute)));
 }
 
-bool is_file(const fs::path& path) {
+// Returns the problem if the output is written over the input: the input's file, a file of its name
+// in the output's folder, or an image in a folder of images that are compared. Else returns "".
+std::string replaced_input(const Path& output, const Path& input, std::string_view verb) {
   std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
+  const std::string name = output.option->get_name();
+  if (fs::is_directory(input.absolute, ignored))
+    return verb == "compare" && input.option->get_positional() &&
+                   is_within(output.absolute, input.absolute) &&
+                   fs::exists(output.absolute, ignored)
+               ? fmt::format("{}: '{}' is among the inputs of this command; choose another file",
+                             name, output.text)
+               : "";
+  if (!fs::is_regular_file(input.absolute, ignored)) return "";
+  if (same_file(input.absolute, output.absolute))
+    return fmt::format("{}: '{}' is an input of this command; choose another file", name,
+                       output.text);
+  if (is_written_into(output, input, verb))
+    return fmt::format("{}: this command writes a file named like its input '{}'; choose another "
+                       "folder",
+                       name, input.text);
+  return "";
 }
 
 } // namespace
 
-std::string find_lost_file(const CLI::App& app) {
+std::string find_lost_file(const CLI::App& app, std::string_view verb) {
   std::vector<Path> paths;
   collect(app, paths);
   const Path* to_stdout = nullptr;
@@ -92,16 +113,32 @@ std::string find_lost_file(const CLI::App& app) {
         return fmt::format("{}: '{}' is in the capture that this command reads; choose another "
                            "folder",
                            output.option->get_name(), output.text);
-      if (is_output(*other.option) && overlap(output, other))
+      if (is_output(*other.option) && overlap(output, other, verb))
         return fmt::format("{} and {} overlap: '{}' and '{}'; choose different paths",
                            output.option->get_name(), other.option->get_name(), output.text,
                            other.text);
-      if (!is_output(*other.option) && is_file(other.absolute) &&
-          same_file(other.absolute, output.absolute))
-        return fmt::format("{}: '{}' is an input of this command; choose another file",
-                           output.option->get_name(), output.text);
+      if (is_output(*other.option)) continue;
+      if (std::string problem = replaced_input(output, other, verb); !problem.empty())
+        return problem;
     }
   }
+  return "";
+}
+
+std::string find_foreign_file(const CLI::App& app, std::string_view verb) {
+  const CLI::Option* name = verb == "schema" ? app.get_option_no_throw("name") : nullptr;
+  const bool one_schema = name != nullptr && name->count() > 0;
+  for (const CLI::Option* option : app.get_options()) {
+    if (!is_output(*option)) continue;
+    for (const std::string& path : option->results())
+      if (path != "-")
+        if (std::string problem =
+                check_output(one_schema ? "schema NAME" : verb, option->get_lnames().front(), path);
+            !problem.empty())
+          return problem;
+  }
+  for (const CLI::App* inner : app.get_subcommands())
+    if (std::string problem = find_foreign_file(*inner, verb); !problem.empty()) return problem;
   return "";
 }
 
