@@ -163,6 +163,8 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   choices.two_queues = options.two_queues;
   if (options.pixel_aspect > 0) choices.pixel_grid = pixel_grid(options.pixel_aspect);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+  if (std::string unused = unused_budget(options.budget, *loaded, options.graph); !unused.empty())
+    return fail(session, ExitCode::usage, unused);
   if (options.frame) return explain_frame(session, options, *loaded);
   const auto budget = read_budget(options.budget);
   if (!budget) return fail(session, budget.error());

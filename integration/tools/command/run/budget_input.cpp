@@ -1,8 +1,11 @@
 #include "integration/tools/command/run/budget_input.hpp"
 
 #include "integration/examples/demo_engine/files.hpp"
+#include "passes/choice/configurations.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace dermis::tools {
 
@@ -22,6 +25,21 @@ demo::Result<demo::Budget> read_budget(const BudgetArguments& arguments) {
   return demo::Budget{arguments.ms,       arguments.percentile,
                       arguments.trials,   arguments.deterministic,
                       calibration.take(), errors.take()};
+}
+
+std::string unused_budget(const BudgetArguments& arguments, const LoadedGraph& loaded,
+                          const std::string& file) {
+  const Graph& graph = loaded.graph;
+  const bool used = arguments.ms == 0 ||
+                    std::ranges::any_of(graph.settings, &SettingDeclaration::by_budget) ||
+                    std::ranges::any_of(graph.passes, [&](const PassDeclaration& pass) {
+                      return choice::runs_by_budget(loaded.pass_types[pass.type]);
+                    });
+  return used ? ""
+              : fmt::format("--budget changes nothing in '{}': it has no setting with \"by\": "
+                            "\"budget\" and no pass over tiles that the budget selects; "
+                            "configs/graphs/skin.json has both",
+                            file);
 }
 
 } // namespace dermis::tools

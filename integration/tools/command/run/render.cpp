@@ -320,6 +320,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     if (!loaded) return fail_graph(session, options.graph, diagnostics);
     const CompileChoices choices = read_choices(loaded->graph, options.settings);
     if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
+    if (std::string unused = unused_budget(options.budget, *loaded, options.graph); !unused.empty())
+      return fail(session, ExitCode::usage, unused);
     if (engine.sampling && !exports_samples(loaded->graph))
       return fail(session, ExitCode::usage,
                   fmt::format("--debug samples: '{}' does not export 'sampling'; afis_guided.json, "
