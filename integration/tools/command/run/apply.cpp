@@ -159,8 +159,9 @@ ExitCode report(const ApplyRun& run, const CapturedSequence& sequence,
   if (!run.times.empty())
     say(run.session,
         format_times(run.times, run.all_runs == 1 ? std::string("pass") + first_frame : "pass"));
-  say(run.session, fmt::format("{} in {}\n", format_count(sequence.folders.size(), "frame", true),
-                               run.options.out));
+  say(run.session,
+      fmt::format("{} in {}\ndevice: {}\n", format_count(sequence.folders.size(), "frame", true),
+                  run.options.out, run.host.properties.deviceName));
   if (run.session.json) {
     JsonWriter answer;
     answer.open_object().member("ok", true).member("graph", run.options.graph);

@@ -254,7 +254,8 @@ ExitCode report(RenderRun& run) {
     text += fmt::format("error of the scattered light: not measured, {}\n", no_error);
   }
   say(run.session,
-      text + fmt::format("\n{} in {}\n", format_count(run.frames, "frame", true), run.options.out));
+      text + fmt::format("\n{} in {}\ndevice: {}\n", format_count(run.frames, "frame", true),
+                         run.options.out, run.info.device));
   if (run.session.json) {
     JsonWriter answer;
     answer.open_object()
