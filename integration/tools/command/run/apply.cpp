@@ -212,6 +212,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
     progress.update(i + 1);
   }
   print_beside_document(session, surfaces);
+  warn_of_earlier("apply", options.out, *sequence, {"combined.exr", "scattered.exr"});
   return report(run, *sequence, surfaces);
 }
 

@@ -1,11 +1,14 @@
 #include "integration/tools/command/run/captured.hpp"
 
 #include "framegraph/text/json_writer.hpp"
+#include "integration/tools/command/output_kind.hpp"
 #include "integration/tools/command/shipped.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <set>
 
 namespace dermis::tools {
 namespace {
@@ -60,6 +63,17 @@ std::optional<CapturedSequence> check_sequence(const Session& session, const std
 std::optional<CapturedFrame> load_frame(const CapturedSequence& sequence, size_t index) {
   Diagnostics already_reported;
   return read_frame(sequence.folders[index], sequence.profiles, already_reported, sequence.roots);
+}
+
+void warn_of_earlier(std::string_view verb, const std::string& folder,
+                     const CapturedSequence& sequence,
+                     std::initializer_list<std::string_view> images) {
+  std::set<std::string> written;
+  for (const std::string& name : sequence.names)
+    for (const std::string_view image : images)
+      written.insert(fmt::format("{}/{}", name, image));
+  if (const std::string earlier = earlier_outputs(verb, folder, written); !earlier.empty())
+    spdlog::warn("{}", for_terminal(earlier));
 }
 
 std::string profile_as_json(const subsurface::Profile& profile) {

@@ -8,8 +8,10 @@
 #include <dermis/dermis.h>
 
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dermis::tools {
@@ -32,6 +34,12 @@ std::optional<CapturedSequence> check_sequence(const Session& session, const std
                                                const std::vector<std::string>& roots);
 // Reads frame number `index` again. Returns nullopt if the frame changed and is no longer valid.
 std::optional<CapturedFrame> load_frame(const CapturedSequence& sequence, size_t index);
+
+// Warns if the folder of --out has images of an earlier run of `verb`. `images`: names of the
+// images of a frame that the verb writes or removes.
+void warn_of_earlier(std::string_view verb, const std::string& folder,
+                     const CapturedSequence& sequence,
+                     std::initializer_list<std::string_view> images);
 
 // Returns the text of a profile file with exactly these numbers.
 std::string profile_as_json(const subsurface::Profile& profile);

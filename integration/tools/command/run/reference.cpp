@@ -101,6 +101,7 @@ ExitCode reference(const Session& session, const ReferenceOptions& options) {
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
     pixels += made->pixels;
   }
+  warn_of_earlier("reference", options.out, *sequence, {"reference.exr", "mask.exr"});
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   say(session, fmt::format("{}, {} pixels in {}; the reference is in {}\n",

@@ -6,6 +6,7 @@
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/output.hpp"
+#include "integration/tools/command/output_kind.hpp"
 #include "integration/tools/command/run/budget_input.hpp"
 #include "integration/tools/command/run/choice_report.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
@@ -29,6 +30,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
 
 namespace dermis::tools {
 namespace {
@@ -46,6 +48,7 @@ struct RenderRun {
   const RenderOptions& options;
   Progress progress;
   OutputFolder out{};
+  std::set<std::string> written{}; // names of the images
   demo::RenderInfo info{};
   std::vector<CaptureProfile> profiles{};
   PassTimes graph_times{}, host_times{};
@@ -118,7 +121,9 @@ std::vector<uint8_t> skips_picture(const demo::FrameOutputs& frame) {
 demo::Result<> write_pictures(RenderRun& run, const demo::FrameOutputs& frame) {
   std::string problem;
   const auto name = [&](const char* what, const char* extension) {
-    return run.out.path_of(fmt::format("{}_{:04}.{}", what, frame.frame, extension));
+    const auto [at, is_new] =
+        run.written.insert(fmt::format("{}_{:04}.{}", what, frame.frame, extension));
+    return run.out.path_of(*at);
   };
   if (!write_png(name("frame", "png"), frame.color.width, frame.color.height, frame.display,
                  problem) ||
@@ -383,6 +388,9 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     problem = deliver_text(options.trace, run.trace.json(session.command, run.info.device));
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   print_beside_document(session, run.surfaces);
+  if (const std::string earlier = earlier_outputs("render", options.out, run.written);
+      !earlier.empty())
+    spdlog::warn("{}", for_terminal(earlier));
   return report(run);
 }
 
