@@ -31,6 +31,28 @@ TEST_F(Render, WritesPicturesTimesAndErrors) {
               ElementsAre("color_0000.exr", "color_0001.exr", "frame_0000.png", "frame_0001.png",
                           "scattered_0000.exr", "scattered_0001.exr"));
   EXPECT_THAT(outcome.out, HasAll("scatter", " ms", "PSNR", " dB", "RMSE", path("out")));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\ndevice: [^\n]+\n$"));
+}
+
+TEST_F(Render, ErrorDoesNotDependOnTheImagesWritten) {
+  const auto error = [&](const char* pictures) { // the candle flickers from frame to frame
+    const Outcome outcome =
+        render(bust, burley, {"--frames", "4", "--subset", "64", "--pictures", pictures, "--json"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const size_t begin = outcome.out.find("\"error\""), end = outcome.out.find('}', begin);
+    return outcome.out.substr(begin, end - begin);
+  };
+  const std::string of_all = error("all");
+  EXPECT_THAT(of_all, HasSubstr("\"psnr_db\""));
+  EXPECT_EQ(of_all, error("last"));
+}
+
+TEST_F(Render, BudgetWithoutAChoice_IsRejected) {
+  EXPECT_THAT(render(bust, burley, {"--frames", "1", "--budget", "5"}),
+              FailsWith(2, "--budget changes nothing in 'configs/graphs/burley.json'"));
+  EXPECT_THAT(run({"explain", burley, "--frame", "--budget", "5", "--size", "16x16"}),
+              FailsWith(2, "--budget changes nothing in 'configs/graphs/burley.json'"));
+  EXPECT_THAT(files(), IsEmpty());
 }
 
 TEST_F(Render, PicturesOfTheLastFrame_TimesOfAll) {
