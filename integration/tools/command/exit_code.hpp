@@ -1,5 +1,6 @@
 #pragma once
-// Exit codes of the command. README.md and `dermis --help` repeat the list.
+// Exit codes of the command. docs/tools.md, `dermis --help` and the manual page repeat the list,
+// and add 141: the signal SIGPIPE ends the command (128 + 13 in a shell).
 
 namespace dermis::tools {
 

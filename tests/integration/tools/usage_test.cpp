@@ -19,7 +19,14 @@ TEST_F(Usage, HelpOfEveryVerbShowsAnExampleAndSucceeds) {
 }
 
 TEST_F(Usage, HelpNamesTheExitCodes) {
-  EXPECT_THAT(run({"--help"}), Succeeds("Exit codes: 0", "130 stopped by Ctrl-C"));
+  const std::string help = run({"--help"}).out, page = run({"man"}).out;
+  const std::string documented = read_text("docs/tools.md");
+  for (const char* code : {"0", "1", "2", "3", "4", "130", "141"}) {
+    EXPECT_THAT(help.substr(help.find("Exit codes:")),
+                ::testing::ContainsRegex(std::string("[:;][ \n]") + code + " "));
+    EXPECT_THAT(page, HasSubstr(std::string(".TP\n") + code + "\n"));
+    EXPECT_THAT(documented, HasSubstr(std::string("| ") + code + " | "));
+  }
 }
 
 TEST_F(Usage, MissingVerb_SaysWhereVerbsAreListed) {

@@ -77,6 +77,7 @@ std::string manual_page(const std::vector<DeclaredVerb>& verbs, std::string_view
           ".TP\n3\nNo driver, output that cannot be written, or a missing package.\n"
           ".TP\n4\nA defect of the program.\n"
           ".TP\n130\nStopped by Ctrl-C.\n"
+          ".TP\n141\nThe reader of standard output ended first, such as head.\n"
           ".SH ENVIRONMENT\n"
           ".TP\n\\fBNO_COLOR\\fR\n"
           "If set, output has no colour unless \\fB--color always\\fR is given.\n";
