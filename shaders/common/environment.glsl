@@ -53,6 +53,8 @@ vec3 profile_direct(uint id) { return profiles[min(id, 255u)].direct.rgb; }
 uint profile_of(uint material) { return min(material, 255u); }
 
 const float largest_depth_mm = 1e9; // 1000 km; sky and infinite far planes are beyond
+// Footprints of pixels that are closer would underflow.
+const float smallest_depth_mm = 1e-6;
 
 bool is_perspective() { return (frame.flags & 1u) != 0u; }
 
@@ -64,7 +66,8 @@ float view_depth(float value) {
   float decoded = (frame.depth_decode.x * value + frame.depth_decode.y) /
                   (frame.depth_decode.z * value + frame.depth_decode.w);
   float depth = (frame.flags & 2u) != 0u ? distance : decoded;
-  return depth > 0.0 && depth < largest_depth_mm ? depth : 0.0; // NaN and Inf compare false
+  // NaN and Inf compare false
+  return depth > smallest_depth_mm && depth < largest_depth_mm ? depth : 0.0;
 }
 
 // Returns the size of a pixel across the view at a depth, in mm in x and y.

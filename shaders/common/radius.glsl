@@ -5,9 +5,10 @@
 #include "constants.glsl"
 #include "common/environment.glsl"
 
-// Returns the factor on d from an optional per-pixel map; NaN and negative values become 0
-// (diffuse).
-float clean_scatter_scale(float value) { return value > 0.0 ? min(value, 1e6) : 0.0; }
+// Returns the factor on d from an optional per-pixel map. NaN, negative values, infinity and the
+// largest half float, which infinity may have become, are 0 (diffuse): a single one would widen d
+// of all pixels around.
+float clean_scatter_scale(float value) { return value > 0.0 && value < 65504.0 ? value : 0.0; }
 
 // Returns d of the widest channel in pixels.
 float projected_d(float d_max_mm, float depth) {

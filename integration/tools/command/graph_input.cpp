@@ -2,6 +2,7 @@
 
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/limits.hpp"
+#include "framegraph/text/reader.hpp"
 #include "framegraph/text/suggest.hpp"
 #include "integration/tools/command/shipped.hpp"
 #include "integration/tools/files/roots.hpp"
@@ -117,6 +118,16 @@ std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
   return known;
 }
 
+// Returns the place of the name of a pass type in a file of pass types.
+SourceLocation where_declared(const Document& document, std::string_view pass_type) {
+  if (const NodeId list = document.find(document.root(), "pass_types"); list.valid())
+    for (const NodeId node : children(document, list))
+      if (const NodeId name = document.find(node, "name");
+          name.valid() && document.text(name) == pass_type)
+        return document.where(name);
+  return document.where(document.root());
+}
+
 } // namespace
 
 std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
@@ -131,7 +142,7 @@ std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
     for (HostPassTypeDeclaration& type : *pass_types) {
       const std::string name = type.name;
       if (!host->add(std::move(type), loaded.pass_types).valid())
-        diagnostics.add(DiagnosticId::duplicate_name, document->where(document->root()),
+        diagnostics.add(DiagnosticId::duplicate_name, where_declared(*document, name),
                         fmt::format("there is a pass type '{}' already", name));
     }
   }

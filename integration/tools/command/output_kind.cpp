@@ -1,7 +1,5 @@
 #include "integration/tools/command/output_kind.hpp"
 
-#include "integration/tools/command/bench/suite/suites.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +43,6 @@ constexpr Kind manual{"a manual page", {"Made by: dermis man"}};
 constexpr Kind format_reference{"a page of 'dermis docs'", {"^# Formats, key by key"}};
 constexpr Kind pass_types{"a page of 'dermis docs'", {"^# Pass types\n"}};
 constexpr Kind slots{"a page of 'dermis docs'", {"^# Slots of the shipped graphs"}};
-constexpr const char* name_of_csv = "a CSV file of this bench";
 
 // A file that a verb writes, by the option that names the file or its folder. `verb` "": every verb
 // with this option.
@@ -92,6 +89,8 @@ constexpr Output outputs[] = {
     {"docs", "out", slots, "slots.md"},
     {"bench all", "out", rows, "index.json"},
     {"bench all", "out", page, "index.html"},
+    {"bench all SUITE.json", "out", rows},
+    {"bench all SUITE.html", "out", page},
 };
 
 std::string head_of(const fs::path& path) {
@@ -161,23 +160,6 @@ std::string check_folder(const Output& output, const fs::path& folder) {
   return "";
 }
 
-// Files of a suite in the folder of `bench all`, or rows of one suite as CSV.
-std::string check_suites(std::string_view verb, std::string_view option, const fs::path& path) {
-  for (const Suite& suite : bench_suites()) {
-    const std::string mark = "^" + suite.columns.front().key;
-    const std::array<const char*, 1> header{mark.c_str()};
-    if (option == "csv" && verb == "bench " + suite.name)
-      return check_file(option, path.string(), header, name_of_csv);
-    if (verb != "bench all" || option != "out") continue;
-    if (const fs::path csv = path / (suite.name + ".csv"); is_foreign(csv, header))
-      return replaces(option, csv, name_of_csv);
-    for (const auto& [extension, kind] : {std::pair(".json", rows), std::pair(".html", page)})
-      if (const fs::path file = path / (suite.name + extension); is_foreign(file, kind.marks))
-        return replaces(option, file, kind.name);
-  }
-  return "";
-}
-
 } // namespace
 
 std::string check_output(std::string_view verb, std::string_view option, const std::string& path) {
@@ -188,7 +170,14 @@ std::string check_output(std::string_view verb, std::string_view option, const s
                               : check_file(option, path, one.kind.marks, one.kind.name);
     if (!problem.empty()) return problem;
   }
-  return verb.starts_with("bench ") ? check_suites(verb, option, path) : "";
+  return "";
+}
+
+std::string check_csv(std::string_view option, const std::string& path,
+                      std::string_view first_column) {
+  const std::string mark = fmt::format("^{}", first_column);
+  const std::array<const char*, 1> header{mark.c_str()};
+  return check_file(option, path, header, "a CSV file of this bench");
 }
 
 bool is_name_of_output(std::string_view verb, std::string_view name) {

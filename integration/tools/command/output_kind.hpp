@@ -9,8 +9,11 @@ namespace dermis::tools {
 
 // Returns the usage error if the verb's option --`option` names a folder in place of a file, or if
 // the verb would replace a file that it does not write; else "". `verb`: its words, such as "bench
-// all"; "schema NAME" writes one file.
+// all"; "schema NAME" writes one file, "bench all SUITE.json" and ".html" those of one suite.
 std::string check_output(std::string_view verb, std::string_view option, const std::string& path);
+// Same for a file of CSV rows, whose first column has this key.
+std::string check_csv(std::string_view option, const std::string& path,
+                      std::string_view first_column);
 
 // Returns whether the verb writes a file of this name (a path relative to the folder) into the
 // folder of its option --out.

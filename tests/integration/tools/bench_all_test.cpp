@@ -55,10 +55,11 @@ TEST_F(BenchAll, SuiteThatCannotRun_KeepsItsFiles) {
   RunOptions no_driver;
   no_driver.environment = {"VK_ICD_FILENAMES=/nonexistent.json",
                            "VK_DRIVER_FILES=/nonexistent.json"};
-  write("out/restir.json", "earlier");
+  const std::string earlier = R"({ "dermis_bench": "earlier" })";
+  write("out/restir.json", earlier);
   EXPECT_EQ(run({"bench", "all", "--suites", "restir", "--out", path("out")}, no_driver).exit_code,
             0);
-  EXPECT_EQ(read("out/restir.json"), "earlier");
+  EXPECT_EQ(read("out/restir.json"), earlier);
 }
 
 TEST_F(BenchAll, StoppedRun_ContinuesInItsMode) {
@@ -98,9 +99,18 @@ TEST_F(BenchAll, UnknownSuite_IsAUsageError) {
   EXPECT_THAT(files(), IsEmpty());
 }
 
-TEST_F(BenchAll, ForeignIndex_IsIgnored) {
-  write("out/index.json",
-        R"({ "suites": [ { "suite": 1, "line": [], "exit_code": "x", "seconds": null } ] })");
+TEST_F(BenchAll, ForeignIndex_IsKept) {
+  const std::string foreign = R"({ "pages": [] })";
+  write("out/index.json", foreign);
+  EXPECT_THAT(run({"bench", "all", "--out", path("out"), "--suites", "record"}),
+              FailsWith(2, "out/index.json", "is not a report of a bench"));
+  EXPECT_EQ(read("out/index.json"), foreign);
+}
+
+TEST_F(BenchAll, DamagedIndex_IsIgnored) {
+  write(
+      "out/index.json",
+      R"({ "dermis_bench": 1, "suites": [ { "suite": 1, "line": [], "exit_code": "x", "seconds": null } ] })");
   EXPECT_EQ(run({"bench", "all", "--out", path("out"), "--suites", "record"}).exit_code, 0);
 }
 

@@ -60,7 +60,7 @@ TEST_F(GraphFiles, ConfigurationsOfABudget_AreCompiled) {
   std::string graph = burley_with(R"("settings": {)", R"("settings": {
     "t": { "choice": ["a", "b"], "by": "budget", "default": "a" },)");
   graph = replaced(graph, scatter, scatter + R"( "when": "t == 'a'",)");
-  EXPECT_THAT(run({"validate", write("choice.json", graph)}), FailsWith(1, "D0307"));
+  EXPECT_THAT(run({"validate", write("choice.json", graph)}), FailsWith(1, "D0307", "with 't' = 'b'"));
 }
 
 TEST_F(GraphFiles, MalformedJsonIsNamedWithFileLineAndColumn) {

@@ -42,7 +42,7 @@ TEST_F(PassTypes, FileIsChecked) {
   const std::string pass_types_file = write("pass_types.json", pass_types);
   EXPECT_THAT(run({"validate", graph_file, "--pass-types", pass_types_file, "--pass-types",
                    pass_types_file}),
-              FailsWith(1, "there is a pass type 'studio.tone' already"));
+              FailsWith(1, "pass_types.json:2:13", "there is a pass type 'studio.tone' already"));
 }
 
 // burley with a host pass after it, which a setting turns on.

@@ -1,5 +1,6 @@
 #include "integration/tools/command/arguments/lost_files.hpp"
 
+#include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/output_kind.hpp"
 
 #include <fmt/format.h>
@@ -91,6 +92,27 @@ std::string replaced_input(const Path& output, const Path& input, std::string_vi
   return "";
 }
 
+// Checks the files of each suite in the folder of `bench all`, and the rows of one suite as CSV.
+std::string check_suites(std::string_view verb, std::string_view option, const fs::path& path) {
+  for (const Suite& suite : bench_suites()) {
+    const std::string& first_column = suite.columns.front().key;
+    if (option == "csv" && verb == "bench " + suite.name)
+      return check_csv(option, path.string(), first_column);
+    if (verb != "bench all" || option != "out") continue;
+    for (const std::string_view extension : {".csv", ".json", ".html"}) {
+      const std::string file = fmt::format("{}{}", (path / suite.name).string(), extension);
+      std::error_code ignored;
+      if (!fs::is_regular_file(file, ignored)) continue; // the suite reports it
+      std::string problem =
+          extension == ".csv"
+              ? check_csv(option, file, first_column)
+              : check_output(fmt::format("bench all SUITE{}", extension), option, file);
+      if (!problem.empty()) return problem;
+    }
+  }
+  return "";
+}
+
 } // namespace
 
 std::string find_lost_file(const CLI::App& app, std::string_view verb) {
@@ -130,12 +152,13 @@ std::string find_foreign_file(const CLI::App& app, std::string_view verb) {
   const bool one_schema = name != nullptr && name->count() > 0;
   for (const CLI::Option* option : app.get_options()) {
     if (!is_output(*option)) continue;
-    for (const std::string& path : option->results())
-      if (path != "-")
-        if (std::string problem =
-                check_output(one_schema ? "schema NAME" : verb, option->get_lnames().front(), path);
-            !problem.empty())
-          return problem;
+    const std::string& option_name = option->get_lnames().front();
+    for (const std::string& path : option->results()) {
+      if (path == "-") continue;
+      std::string problem = check_output(one_schema ? "schema NAME" : verb, option_name, path);
+      if (problem.empty()) problem = check_suites(verb, option_name, path);
+      if (!problem.empty()) return problem;
+    }
   }
   for (const CLI::App* inner : app.get_subcommands())
     if (std::string problem = find_foreign_file(*inner, verb); !problem.empty()) return problem;

@@ -23,20 +23,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace dermis::tools {
 namespace {
 
-// Returns whether all configurations compile that a budget can choose, which a graph needs to be
-// created.
-bool choices_compile(const LoadedGraph& loaded, Diagnostics& diagnostics) {
+// Reports what the verifier finds in the plan of one configuration. Returns false if the verifier
+// rejects the plan; clears `verified` if the plan is not verified.
+bool check_plan_of(const CompiledPlan& compiled, const std::string& configuration,
+                   const SourceLocation& where, Diagnostics& diagnostics, bool& verified) {
+  const Verdict verdict = verify(compiled.plan);
+  for (const std::string& violation : verdict.violations)
+    diagnostics.add(DiagnosticId::internal_defect, where,
+                    fmt::format("the verifier rejects the plan{}: {}", configuration, violation));
+  if (!verdict.not_verified.empty()) {
+    verified = false;
+    diagnostics.add(
+        DiagnosticId::plan_not_verified, where,
+        fmt::format("the plan{} is not verified: {}", configuration, verdict.not_verified));
+  }
+  return verdict.violations.empty();
+}
+
+// Compiles all configurations that a budget can choose, which a graph needs to be created, and
+// verifies their plans. The first plan, of the defaults, was verified before.
+bool check_configurations(const LoadedGraph& loaded, const SourceLocation& where,
+                          Diagnostics& diagnostics, bool& verified) {
   const auto& settings = loaded.graph.settings;
   if (std::none_of(settings.begin(), settings.end(), [](const auto& one) { return one.by_budget; }))
     return true;
   Diagnostics found = diagnostics; // of a good graph, repeated notes of configurations are dropped
-  if (!choice_sets(loaded, default_size, found).empty()) return true;
-  diagnostics = std::move(found);
-  return false;
+  const auto configurations = choice_configurations(loaded, default_size, found);
+  if (!configurations) {
+    diagnostics = std::move(found);
+    return false;
+  }
+  bool good = true;
+  std::vector<uint8_t> checked(configurations->compiled.size(), 0);
+  checked.front() = 1;
+  for (const choice::Configuration& one : configurations->all)
+    if (std::exchange(checked[one.plan], 1) == 0)
+      good = check_plan_of(configurations->compiled[one.plan], fmt::format(" of '{}'", one.name),
+                           where, diagnostics, verified) &&
+             good;
+  return good;
 }
 
 bool check_graph(const Document& document, const std::string& path, const GraphInputs& inputs,
@@ -51,16 +81,10 @@ bool check_graph(const Document& document, const std::string& path, const GraphI
   const std::optional<CompiledPlan> compiled =
       compile_generic(*loaded, default_size, choices, diagnostics);
   if (!compiled) return false;
-  const Verdict verdict = verify(compiled->plan);
-  for (const std::string& violation : verdict.violations)
-    diagnostics.add(DiagnosticId::internal_defect, document.where(document.root()),
-                    fmt::format("the verifier rejects the plan: {}", violation));
-  if (!choices_compile(*loaded, diagnostics)) return false;
-  verified = verdict.not_verified.empty();
-  if (!verified)
-    diagnostics.add(DiagnosticId::plan_not_verified, document.where(document.root()),
-                    fmt::format("the plan is not verified: {}", verdict.not_verified));
-  return verdict.violations.empty();
+  const SourceLocation where = document.where(document.root());
+  verified = true;
+  const bool good = check_plan_of(*compiled, "", where, diagnostics, verified);
+  return check_configurations(*loaded, where, diagnostics, verified) && good;
 }
 
 bool check_profile(const Document& document, Diagnostics& diagnostics, std::string& about) {

@@ -25,16 +25,21 @@ std::optional<ChoiceConfigurations> choice_configurations(const CompileInput& in
   return out;
 }
 
-std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, const Size& size,
-                                                 Diagnostics& diagnostics) {
+std::optional<ChoiceConfigurations>
+choice_configurations(const LoadedGraph& loaded, const Size& size, Diagnostics& diagnostics) {
   const DeviceProfile device = generic_profile();
   const CompileChoices choices = read_choices(loaded.graph);
-  const CompileInput input = compile_input(loaded, device, size, choices);
-  std::vector<std::vector<NamedValue>> sets;
   choice::CostEstimator costs;
   choice::ErrorModel no_errors;
   no_errors.unscattered = {{1, 1}};
-  const auto configurations = choice_configurations(input, {}, no_errors, costs, diagnostics);
+  return choice_configurations(compile_input(loaded, device, size, choices), {}, no_errors, costs,
+                               diagnostics);
+}
+
+std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, const Size& size,
+                                                 Diagnostics& diagnostics) {
+  std::vector<std::vector<NamedValue>> sets;
+  const auto configurations = choice_configurations(loaded, size, diagnostics);
   if (!configurations) return sets;
   for (const choice::Configuration& configuration : configurations->all) {
     std::vector<NamedValue>& set = sets.emplace_back();

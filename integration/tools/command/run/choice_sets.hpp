@@ -26,4 +26,8 @@ std::optional<ChoiceConfigurations> choice_configurations(const CompileInput& in
                                                           choice::CostEstimator& costs,
                                                           Diagnostics& diagnostics);
 
+// Same, on the generic device, without a setting of the host and without tables.
+std::optional<ChoiceConfigurations>
+choice_configurations(const LoadedGraph& loaded, const Size& size, Diagnostics& diagnostics);
+
 } // namespace dermis::tools

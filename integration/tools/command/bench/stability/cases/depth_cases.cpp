@@ -96,6 +96,7 @@ std::vector<StabilityCase> depth_cases() {
           odd_depth("depth_nan_beside", not_a_number),
           odd_depth("depth_infinity_beside", infinity),
           odd_depth("depth_negative_beside", -1),
+          odd_depth("depth_denormal_beside", 1e-44f),
           far_plane("depth_1e-6_m", 1e-6f),
           far_plane("depth_1e6_m", 1e6f),
           {.name = "nothing_but_sky", .given = at_depth(0), .finite_only = true},
