@@ -133,6 +133,8 @@ struct ModelOptions { // for scenes with a shape "model"
 struct SchemaOptions {
   std::string name;      // graph, profile, ...; "": all schemas
   std::string out = "-"; // file, or the folder for all schemas
+  // files of the host's pass types, which graphs and fragments may then use
+  std::vector<std::string> pass_types;
 };
 ExitCode schema(const Session& session, const SchemaOptions& options);
 

@@ -2,6 +2,8 @@
 // exported.
 #include "tests/integration/tools/command_fixture.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace dermis::test {
 namespace {
 
@@ -43,6 +45,19 @@ TEST_F(PassTypes, FileIsChecked) {
   EXPECT_THAT(run({"validate", graph_file, "--pass-types", pass_types_file, "--pass-types",
                    pass_types_file}),
               FailsWith(1, "pass_types.json:2:13", "there is a pass type 'studio.tone' already"));
+}
+
+TEST_F(PassTypes, SchemaKnowsThem) {
+  const std::string pass_types_file = write("pass_types.json", pass_types);
+  EXPECT_THAT(run({"schema", "graph"}).out, Not(HasSubstr("studio.tone")));
+  const Outcome outcome = run({"schema", "graph", "--pass-types", pass_types_file});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json schema = nlohmann::json::parse(outcome.out);
+  const auto& types = schema["definitions"]["pass_of_a_kind"]["allOf"];
+  EXPECT_THAT(types.back().dump(),
+              AllOf(HasSubstr("studio.tone"), HasSubstr("toned"), HasSubstr("level")));
+  EXPECT_THAT(run({"schema", "fragment", "--pass-types", write("broken.json", "{")}),
+              FailsWith(1, "broken.json:1:2"));
 }
 
 // burley with a host pass after it, which a setting turns on.

@@ -34,19 +34,6 @@ TEST_F(Render, WritesPicturesTimesAndErrors) {
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\ndevice: [^\n]+\n$"));
 }
 
-TEST_F(Render, ErrorDoesNotDependOnTheImagesWritten) {
-  const auto error = [&](const char* pictures) { // the candle flickers from frame to frame
-    const Outcome outcome =
-        render(bust, burley, {"--frames", "4", "--subset", "64", "--pictures", pictures, "--json"});
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    const size_t begin = outcome.out.find("\"error\""), end = outcome.out.find('}', begin);
-    return outcome.out.substr(begin, end - begin);
-  };
-  const std::string of_all = error("all");
-  EXPECT_THAT(of_all, HasSubstr("\"psnr_db\""));
-  EXPECT_EQ(of_all, error("last"));
-}
-
 TEST_F(Render, BudgetWithoutAChoice_IsRejected) {
   EXPECT_THAT(render(bust, burley, {"--frames", "1", "--budget", "5"}),
               FailsWith(2, "--budget changes nothing in 'configs/graphs/burley.json'"));

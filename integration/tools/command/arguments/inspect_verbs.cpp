@@ -163,8 +163,10 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
 void add_schema_verb(CLI::App& app, Invocation& invocation) {
   add_verb<SchemaOptions>(
       app, invocation, "schema", "Write the JSON Schemas of the file formats, for editors",
-      "dermis schema graph\n  dermis schema --out build/docs/schema", schema,
-      [&invocation](CLI::App& verb, SchemaOptions& options) {
+      "dermis schema graph\n  dermis schema graph --pass-types studio.json --out "
+      "graph.schema.json\n"
+      "  dermis schema --out build/docs/schema",
+      schema, [&invocation](CLI::App& verb, SchemaOptions& options) {
         const CLI::Option* name =
             verb.add_option("name", options.name,
                             fmt::format("One of {}; without it --out is a folder for all",
@@ -173,6 +175,7 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
         invocation.offered[name] = schema_names();
         add_path(verb, "--out,-o", options.out,
                  "File to write, - for standard output [-]; a folder if all are written", "PATH");
+        add_pass_types(verb, options.pass_types);
       });
 }
 

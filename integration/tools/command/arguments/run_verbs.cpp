@@ -94,8 +94,10 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("VIEW");
         static const std::map<std::string, RenderOptions::Pictures> pictures{
             {"all", RenderOptions::Pictures::all}, {"last", RenderOptions::Pictures::last}};
-        add_choice(verb, "--pictures", options.pictures, pictures,
-                   "Frames to write as images. With last, other frames are only timed [all]")
+        add_choice(
+            verb, "--pictures", options.pictures, pictures,
+            "Frames to write as images. With last, other frames are only timed, and the error is "
+            "in units of the last frame's exposure instead of that of all frames [all]")
             ->type_name("FRAMES");
         verb.add_option("--subset", options.subset,
                         "Pixels of the last frame compared with the reference; 0: none [4096]")

@@ -22,21 +22,23 @@
 namespace dermis::tools {
 namespace {
 
-std::vector<std::pair<std::string_view, std::string>> all_schemas() {
-  std::vector<std::pair<std::string_view, std::string>> all;
-  all.emplace_back("graph", graph_schema(subsurface::make_pass_types()));
-  all.emplace_back("fragment", fragment_schema(subsurface::make_pass_types()));
+using Schemas = std::vector<std::pair<std::string_view, std::string>>; // names and texts
+
+Schemas all_schemas(const PassTypeRegistry& pass_types) {
+  Schemas all;
+  all.emplace_back("graph", graph_schema(pass_types));
+  all.emplace_back("fragment", fragment_schema(pass_types));
   for (const NamedSchema& one : written_schemas())
     all.emplace_back(one.name, std::string(one.text));
   return all;
 }
 
-ExitCode write_all(const Session& session, const std::string& path) {
+ExitCode write_all(const Session& session, const Schemas& schemas, const std::string& path) {
   OutputFolder folder;
   if (const std::string problem = folder.open(path); !problem.empty())
     return fail(session, ExitCode::environment, problem);
   std::vector<std::string> files;
-  for (const auto& [name, text] : all_schemas()) {
+  for (const auto& [name, text] : schemas) {
     const std::string file = folder.path_of(fmt::format("{}.schema.json", name));
     if (const std::string problem = deliver_text(file, text); !problem.empty())
       return fail(session, ExitCode::environment, problem);
@@ -82,14 +84,18 @@ std::vector<std::string> schema_names() {
 }
 
 ExitCode schema(const Session& session, const SchemaOptions& options) {
+  Diagnostics diagnostics;
+  const auto loaded = load_pass_types(options.pass_types, diagnostics);
+  if (!loaded)
+    return fail(session, ExitCode::problems, "the pass types cannot be used", &diagnostics);
+  const Schemas all = all_schemas(loaded->pass_types);
   if (options.name.empty()) {
-    if (options.out != "-") return write_all(session, options.out);
+    if (options.out != "-") return write_all(session, all, options.out);
     return fail(session, ExitCode::usage,
                 fmt::format("name one of {}, or a folder for all of them with --out",
                             format_list(schema_names())));
   }
   std::vector<std::string_view> names;
-  const auto all = all_schemas();
   for (const auto& [name, text] : all) {
     names.push_back(name);
     if (name != options.name) continue;
@@ -113,7 +119,7 @@ ExitCode docs(const Session& session, const DocsOptions& options) {
   if (graphs->empty())
     return fail(session, ExitCode::problems, fmt::format("{} holds no graphs", options.graphs));
   const std::pair<std::string, std::string> pages[] = {
-      {"format_reference.md", format_page(all_schemas())},
+      {"format_reference.md", format_page(all_schemas(subsurface::make_pass_types()))},
       {"pass_types.md", pass_types_page(subsurface::make_pass_types())},
       {"slots.md", slots_page(*graphs)}};
   for (const auto& [name, text] : pages) {

@@ -166,7 +166,6 @@ demo::Result<> take_pictures(RenderRun& run, const demo::FrameOutputs& frame) {
   std::string problem;
   if (!run.options.capture.empty() && !run.capture.add(*captured, problem))
     return cannot_write(problem);
-  run.exposure = {}; // of the frame that is compared, whichever others have images
   run.exposure.add(captured->lighting.values, captured->profile);
   run.last = make_reference_frame(*captured);
   if (run.transmission) add_transmission(*captured, run.last);
