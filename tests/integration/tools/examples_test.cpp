@@ -82,6 +82,8 @@ protected:
 TEST_F(Examples, ExamplesOfEveryVerb_RunUnchanged) {
   // Files that the examples expect.
   write("few.json", techniques_alone);
+  write("studio.json", R"({ "dermis_pass_types": 2, "pass_types": [
+    { "name": "studio.tone", "ports": [ { "name": "toned", "usage": "storage_image_update" } ] } ] })");
   write("limits.json", R"({ "dermis_kernel_limits": 1, "rules": [
     { "graph": "*", "max": { "dispatches": 64 } } ] })");
   ASSERT_EQ(shell("dermis capture configs/scenes/bust.json --out capture --size 64x36 --frames 2\n"
