@@ -3,6 +3,7 @@
 
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/json_writer.hpp"
+#include "framegraph/text/reader.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "integration/examples/demo_engine/scene/read_scene.hpp"
 #include "integration/tools/command/expect/expectation.hpp"
