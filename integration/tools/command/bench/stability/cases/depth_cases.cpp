@@ -62,18 +62,38 @@ subsurface::Matrix4 projection(View view, Range range, double far_plane, double 
   return m;
 }
 
+// Replaces the orthographic camera without a projection by one that sees as much at 1 m.
+void set_camera(CapturedFrame& frame, View view, Range range, double far_plane) {
+  FrameDescription& description = frame.description;
+  const double pitch = *description.pixel_pitch_m;
+  description.pixel_pitch_m.reset();
+  description.perspective = view == View::perspective;
+  description.clip_from_view = projection(view, range, far_plane, pitch * stability_side / 2);
+  complete_projection(description, frame.rays);
+  description.previous_clip_from_view = description.clip_from_view;
+}
+
+// One pixel has an invalid depth, under a perspective camera: all others must be unaffected.
+StabilityCase one_odd_depth(std::string_view name, float depth) {
+  const auto with = [](float of_pixel) {
+    return [of_pixel](uint32_t) {
+      CapturedFrame frame = textured_frame();
+      set_camera(frame, View::perspective, Range::forward, far_m);
+      std::fill(frame.depth.values.begin(), frame.depth.values.end(), 1.0f);
+      frame.depth.at(stability_side / 2, stability_side / 2, 0) = of_pixel;
+      return frame;
+    };
+  };
+  return {.name = name, .given = with(depth), .same_as = with(0), .bound = furnace};
+}
+
 // A tilted plane at 1 m with sky on the right. The depth buffer must give the same result as
 // distances.
 StabilityCase depth_buffer(std::string_view name, View view, Range range, double far_plane) {
   const auto make = [=](uint32_t) {
     CapturedFrame frame = textured_frame();
-    FrameDescription& description = frame.description;
-    const double pitch = *description.pixel_pitch_m;
-    description.pixel_pitch_m.reset();
-    description.perspective = view == View::perspective;
-    description.clip_from_view = projection(view, range, far_plane, pitch * stability_side / 2);
-    complete_projection(description, frame.rays);
-    description.previous_clip_from_view = description.clip_from_view;
+    const double pitch = *frame.description.pixel_pitch_m;
+    set_camera(frame, view, range, far_plane);
     for_pixels(frame, [&](uint32_t x, uint32_t y, size_t i) {
       const bool sky = x >= 36;
       frame.depth.at(x, y, 0) = sky ? 0.0f : static_cast<float>(1 + pitch * x);
@@ -96,7 +116,7 @@ std::vector<StabilityCase> depth_cases() {
           odd_depth("depth_nan_beside", not_a_number),
           odd_depth("depth_infinity_beside", infinity),
           odd_depth("depth_negative_beside", -1),
-          odd_depth("depth_denormal_beside", 1e-44f),
+          one_odd_depth("depth_denormal_alone", 1e-44f),
           far_plane("depth_1e-6_m", 1e-6f),
           far_plane("depth_1e6_m", 1e6f),
           {.name = "nothing_but_sky", .given = at_depth(0), .finite_only = true},
