@@ -182,18 +182,22 @@ bool usable(const State& to, uint32_t to_history, const State& from, uint32_t fr
 } // namespace
 
 Rectangle carried_rectangle(const State& to, const State& from) noexcept {
-  const auto scaled = [](auto value, uint32_t now, uint32_t before) {
-    return static_cast<decltype(value)>(static_cast<int64_t>(value) * now / std::max(before, 1u));
+  // The texels of the new size that rescale_history.comp fills from texels of the rectangle.
+  const auto scale = [](uint32_t& first, uint32_t& side, uint32_t now, uint32_t before) {
+    if (side == 0 || now == before || before == 0) return;
+    // first texel whose centre lies at or beyond `edge`
+    const auto texel_at = [&](int64_t edge) {
+      return (2 * edge * now + before - 1) / (2 * before);
+    };
+    const int64_t begin = std::min<int64_t>(texel_at(first), int64_t{now} - 1),
+                  end = texel_at(int64_t{first} + side);
+    first = static_cast<uint32_t>(begin);
+    // 0 would mean that there is no earlier frame.
+    side = static_cast<uint32_t>(std::max<int64_t>(end - begin, 1));
   };
   Rectangle out = from.previous_rectangle;
-  out.x = scaled(out.x, to.plan.view_width, from.plan.view_width);
-  out.y = scaled(out.y, to.plan.view_height, from.plan.view_height);
-  // 0 would mean that there is no earlier frame.
-  const auto scaled_side = [&](uint32_t side, uint32_t now, uint32_t before) {
-    return side == 0 ? 0 : std::max(scaled(side, now, before), 1u);
-  };
-  out.width = scaled_side(out.width, to.plan.view_width, from.plan.view_width);
-  out.height = scaled_side(out.height, to.plan.view_height, from.plan.view_height);
+  scale(out.x, out.width, to.plan.view_width, from.plan.view_width);
+  scale(out.y, out.height, to.plan.view_height, from.plan.view_height);
   return out;
 }
 

@@ -197,6 +197,34 @@ TEST_F(ReplacedHistory, OtherSize_KeepsOnlyRescaledHistories) {
   }
 }
 
+// Other texels of the new size hold what lay outside of the rectangle, which no pass has written.
+TEST_F(ReplacedHistory, OtherSize_KeepsTheTexelsThatTheRectangleFills) {
+  SmallGraph g = counter();
+  for (ResourceDeclaration& resource : g.graph.resources)
+    resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
+  const uint32_t now = side * 3 / 4;
+  for (uint32_t first = 0; first < side; ++first)
+    for (const uint32_t length : {2u, 5u, side - first}) {
+      if (first + length > side) continue;
+      start(g, side, side);
+      [[maybe_unused]] const TestImage result = bind(g, "result", {}); // keeps the image
+      ASSERT_FALSE(frame(0.0f, {first, 0, length, 1}));
+      take_over(g, now, side);
+      uint32_t begin = now, end = 0; // as rescale_history.comp takes texels
+      for (uint32_t x = 0; x < now; ++x)
+        if (const uint32_t nearest = (2 * x + 1) * side / (2 * now);
+            nearest >= first && nearest < first + length) {
+          begin = std::min(begin, x);
+          end = x + 1;
+        }
+      const vulkan::Rectangle carried = executor->previous_rectangle(replaced.get());
+      EXPECT_EQ(carried.x, begin) << first << ' ' << length;
+      EXPECT_EQ(carried.width, end - begin) << first << ' ' << length;
+      wait();
+      replaced.reset();
+    }
+}
+
 // A previous rectangle without pixels would mean that there was no frame.
 TEST_F(ReplacedHistory, OtherSize_KeepsAPixelOfTheRectangle) {
   SmallGraph g = counter();
