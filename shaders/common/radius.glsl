@@ -7,8 +7,9 @@
 
 // Returns the factor on d from an optional per-pixel map. NaN, negative values, infinity and the
 // largest half float, which infinity may have become, are 0 (diffuse): a single one would widen d
-// of all pixels around.
-float clean_scatter_scale(float value) { return value > 0.0 && value < 65504.0 ? value : 0.0; }
+// of all pixels around. So are factors below 1e-6: they remove scattering, and the square of a
+// denormal one is 0, by which tabulated profiles would be divided.
+float clean_scatter_scale(float value) { return value >= 1e-6 && value < 65504.0 ? value : 0.0; }
 
 // Returns d of the widest channel in pixels.
 float projected_d(float d_max_mm, float depth) {

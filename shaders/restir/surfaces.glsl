@@ -66,7 +66,7 @@ scatter_domain domain_of(utexture2D material, texture2D depth_texture, texture2D
   float depth = view_depth(texelFetch(depth_texture, texel, 0).r);
   vec3 normal = view_normal(texelFetch(normal_texture, texel, 0).xyz);
   float square = dot(normal, normal);
-  if (id == 0u || !(depth > 0.0) || !(square > 0.0 && square < 3e38)) // not finite: no surface
+  if (id == 0u || !(depth > 0.0) || !(square > 1e-30 && square < 3e38)) // no direction: no surface
     return scatter_domain(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0), 0u);
   float scale = scale_bound ? clean_scatter_scale(texelFetch(scatter_scale, texel, 0).r) : 1.0;
   if (!(projected_d(find_profile(id, scale).d.w, depth) >= copy_below_d_px))

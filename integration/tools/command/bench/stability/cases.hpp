@@ -67,8 +67,8 @@ inline constexpr double furnace = 2e-3;
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN(),
                        infinity = std::numeric_limits<float>::infinity();
 
-// Returns five profiles. Ids 1 and 2: 2 is twice as wide. Id 3: blue does not scatter. Ids 4 and 5:
-// blue has a thousandth and a hundredth of the width.
+// Returns six profiles. Ids 1 and 2: 2 is twice as wide. Id 3: blue does not scatter. Ids 4 and 5:
+// blue has a thousandth and a hundredth of the width. Id 6: a dipole, whose falloff is tabulated.
 std::vector<CaptureProfile> stability_profiles();
 // Returns a white plane under light 1, all of profile 1.
 CapturedFrame sound_frame(uint32_t width = stability_side, uint32_t height = stability_side,

@@ -141,11 +141,18 @@ std::vector<CaptureProfile> stability_profiles() {
     subsurface::derive(made);
     return made;
   };
+  subsurface::Profile dipole;
+  dipole.name = "dipole";
+  dipole.model = subsurface::ProfileModel::dipole;
+  dipole.sigma_a = {0.1, 0.2, 0.4};
+  dipole.sigma_s_prime = {2, 2, 2};
+  subsurface::derive(dipole);
   return {{1, grey_profile()},
           {2, wide},
           {3, with_blue("no_blue", 0)},
           {4, with_blue("narrow_blue", 1e-3)},
-          {5, with_blue("blue_of_a_hundredth", 1e-2)}};
+          {5, with_blue("blue_of_a_hundredth", 1e-2)},
+          {6, dipole}};
 }
 
 CapturedFrame sound_frame(uint32_t width, uint32_t height, double d_px) {

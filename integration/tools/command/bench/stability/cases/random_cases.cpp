@@ -9,12 +9,13 @@
 namespace dermis::tools {
 namespace {
 
-constexpr std::array any_value{not_a_number, infinity,  -infinity, 0.0f,  -0.0f,  -1.0f, 1e-45f,
-                               1e-40f,       0x1p-126f, 6e-8f,     1e-5f, 0.5f,   1.0f,  1e3f,
-                               65504.0f,     65520.0f,  0x1p31f,   1e30f, -1e30f, 3e38f, -3e38f};
-constexpr std::array<uint8_t, 7> ids{0, 1, 2, 3, 4, 5, 200}; // the last id has no profile
-constexpr std::array dim_light{0.0f, 1e-3f, 0.5f, 1.0f};     // light values
-constexpr std::array damaged_fractions{256u, 8u, 1u};        // one of that many pixels
+constexpr std::array any_value{not_a_number, infinity, -infinity, 0.0f,      -0.0f,    -1.0f,
+                               1e-45f,       1e-40f,   1e-30f,    0x1p-126f, 6e-8f,    1e-5f,
+                               0.5f,         1.0f,     1e3f,      65504.0f,  65520.0f, 0x1p31f,
+                               1e30f,        -1e30f,   3e38f,     -3e38f};
+constexpr std::array<uint8_t, 8> ids{0, 1, 2, 3, 4, 5, 6, 200}; // the last id has no profile
+constexpr std::array dim_light{0.0f, 1e-3f, 0.5f, 1.0f};        // light values
+constexpr std::array damaged_fractions{256u, 8u, 1u};           // one of that many pixels
 
 void spoil(Image& image, uint32_t fraction, SplitMix64& dice) {
   for (float& value : image.values)

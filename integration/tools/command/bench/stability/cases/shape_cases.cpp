@@ -53,6 +53,23 @@ CapturedFrame with_profile(CapturedFrame frame, uint8_t id) {
   return frame;
 }
 
+// One pixel of a tabulated profile has a factor on d whose square is below the float range. History
+// is read between texels, so that what it holds for the pixel reaches others.
+StabilityCase one_tiny_scale() {
+  const auto with = [](float factor) {
+    return [factor](uint32_t) {
+      CapturedFrame frame = with_scale(with_profile(textured_frame(), 6), 1);
+      frame.scatter_scale.at(stability_side / 2, stability_side / 2, 0) = factor;
+      frame.velocity = Image::sized(stability_side, stability_side, 2);
+      for (size_t i = 0; i < frame.velocity.values.size(); ++i)
+        frame.velocity.values[i] = i % 2 == 0 ? 0.37f : 0.26f;
+      return frame;
+    };
+  };
+  return {
+      .name = "scatter_scale_1e-30_alone", .frames = 12, .given = with(1e-30f), .same_as = with(0)};
+}
+
 // Neighbouring pixels differ in depth by d or more; blue has a hundredth of d. Weights of
 // neighbours are at the limit of the float range.
 StabilityCase far_apart() {
@@ -130,6 +147,7 @@ std::vector<StabilityCase> shape_cases() {
           without_scattering("scatter_scale_negative", -1),
           without_scattering("scatter_scale_nan", not_a_number),
           without_scattering("scatter_scale_infinity", infinity),
+          one_tiny_scale(),
           furnace_of("d_1e4_px", [] {
             return with_scale(sound_frame(), static_cast<float>(1e4 / stability_d_px));
           })};
