@@ -15,8 +15,9 @@ const int pyramid_border = 2;
 // Chains that keep profiles apart store masks scaled by `apart_scale`. A pixel next to another
 // profile has `mixed_mask`, which spreads to every texel that the pixel contributes to. Filtered
 // reads between levels have weights of at least 2^-24 (8 bits per axis and between levels), so that
-// a texel with this mask is detected above `mixed_above`, which no other mask reaches. Drivers that
-// filter with finer weights may miss one, which then adds to the mask by which light is divided.
+// a texel with this mask is detected above `mixed_above`, which no other mask reaches. With finer
+// weights, as on lavapipe, a read may stay below this limit; its light is then too dark, by at most
+// 0.1 % where the surface covers all texels of the read.
 const float apart_scale = 0.001953125; // 2^-9: halves hold masks down to 1/32 in full precision
 const float mixed_mask = 65504.0;      // the largest fp16
 const float mixed_above = 1.001 * apart_scale;

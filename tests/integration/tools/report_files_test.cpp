@@ -126,6 +126,20 @@ TEST(ReportFiles, NumbersHaveSignificantDigitsAndNoPowers) {
   EXPECT_EQ(text(0, 3), "0");
 }
 
+TEST(ReportFiles, VerdictNamesMissedGoalsThatAreNotRequired) {
+  ReportTable table;
+  table.columns = {{"holds", "holds", {.goal = Goal::required}},
+                   {"fast", "fast", {.goal = Goal::advisory}}};
+  table.rows = {{true, true}, {true, true}};
+  EXPECT_EQ(verdict_of(table), "all goals of 2 rows are met");
+  table.rows[0][1] = false;
+  EXPECT_EQ(verdict_of(table), "1 of 2 rows miss a goal that is not required");
+  table.rows[1][0] = false;
+  EXPECT_EQ(verdict_of(table), "1 of 2 rows miss a goal");
+  table.rows = {{ReportValue(), ReportValue()}};
+  EXPECT_EQ(verdict_of(table), "");
+}
+
 TEST(ReportFiles, RowsThatMissTheirGoalsAreCountedAndMarked) {
   Report report;
   report.table.columns = {{"holds", "holds", {.goal = Goal::required}}, {"flag", "flag"}};

@@ -124,6 +124,17 @@ GoalCount count_goals(const ReportTable& table, Goal goal) {
   return count;
 }
 
+std::string verdict_of(const ReportTable& table) {
+  const GoalCount required = count_goals(table, Goal::required),
+                  advisory = count_goals(table, Goal::advisory);
+  const size_t rows = table.rows.size();
+  if (required.missed > 0) return fmt::format("{} of {} rows miss a goal", required.missed, rows);
+  if (advisory.missed > 0)
+    return fmt::format("{} of {} rows miss a goal that is not required", advisory.missed, rows);
+  if (required.rows + advisory.rows == 0) return "";
+  return fmt::format("all goals of {} rows are met", rows);
+}
+
 std::vector<std::pair<std::string, std::string>> machine_info(const std::string& command,
                                                               const std::string& device) {
   std::vector<std::pair<std::string, std::string>> info = {{"command", command}};

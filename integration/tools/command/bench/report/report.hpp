@@ -113,6 +113,8 @@ struct GoalCount {
   size_t missed = 0, rows = 0;
 };
 GoalCount count_goals(const ReportTable& table, Goal goal);
+// Returns a line on the goals that the rows meet or miss; "" for a table without goals.
+std::string verdict_of(const ReportTable& table);
 
 // Returns the table, the notes and the facts for a terminal.
 std::string report_as_text(const Report& report);

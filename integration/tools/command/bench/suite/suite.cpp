@@ -129,14 +129,11 @@ ExitCode run_suite(const Session& given, const Suite& suite, const SuiteRequest&
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
   const GoalCount goals = count_goals(report.table, Goal::required);
-  const size_t rows = report.table.rows.size();
-  const std::string verdict = goals.missed == 0
-                                  ? fmt::format("all goals of {} rows are met", rows)
-                                  : fmt::format("{} of {} rows miss a goal", goals.missed, rows);
+  const std::string verdict = verdict_of(report.table);
   bool prints = !session.quiet && request.json != "-" && request.csv != "-" && request.html != "-";
   for (const auto& [path, text] : run.files)
     prints = prints && path != "-";
-  if (prints) print(report_as_text(report) + (goals.rows > 0 ? verdict + "\n" : ""));
+  if (prints) print(report_as_text(report) + (verdict.empty() ? "" : verdict + "\n"));
   session.json = false; // standard output may have the rows
   std::string problem = deliver_report(report, request.json, request.csv, request.html);
   for (const auto& [path, text] : run.files)
