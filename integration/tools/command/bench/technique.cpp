@@ -73,9 +73,6 @@ std::vector<float> depth_buffer_of(std::span<const float> distances,
 
 // A GPU that has worked for this long runs at its full clock rate.
 constexpr std::chrono::milliseconds time_to_full_clock{20};
-// Exceeds the number of frames that one run_again() runs. The next frame's number is a multiple of
-// it, so that samples do not depend on the device's speed.
-constexpr uint64_t frames_apart = uint64_t{1} << 20;
 
 } // namespace
 
@@ -162,7 +159,6 @@ demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& fram
   for (const SlotData& data : slots.data)
     if (auto given = device_->upload(data.slot, data.texels, data.channels); !given)
       return given.error();
-  if (std::exchange(ran_again_, false)) device_->skip_to(++restarts_ * frames_apart);
   device_->skip_to(std::exchange(next_frame_index_, 0));
   frame_ = c_frame(frame.description);
   if (depth == DepthGiven::depth_buffer) frame_.depth_kind = DERMIS_DEPTH_DEVICE;
@@ -186,7 +182,6 @@ uint64_t TechniqueRun::history_bytes() {
 }
 
 demo::Result<TechniqueTimes> TechniqueRun::run_again() {
-  ran_again_ = true;
   const auto end = std::chrono::steady_clock::now() + time_to_full_clock;
   do {
     if (auto ran = device_->run(frame_); !ran) return ran.error();

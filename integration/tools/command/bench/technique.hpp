@@ -78,8 +78,8 @@ public:
   demo::Result<std::vector<float>> sampling();
   uint64_t history_bytes();
   // Runs the last frame again, on the light left by the previous run. Repeats a short frame until a
-  // GPU, which slows down while it waits, has reached its clock rate. Returns times of the last
-  // run.
+  // GPU, which slows down while it waits, has reached its clock rate; the number of the next frame
+  // then depends on the device's speed. Returns times of the last run.
   demo::Result<TechniqueTimes> run_again();
   // Returns counts of the last frame. `sampled_fraction` is the fraction of its subsurface pixels
   // that scatter; `d_px` is its median d per channel; `taken` is the number of samples per
@@ -107,8 +107,6 @@ private:
   dermis_frame frame_ = DERMIS_FRAME_INIT;
   float frame_seconds_ = 0;
   uint64_t next_frame_index_ = 0; // 0: regular numbering
-  bool ran_again_ = false;        // since the last scatter()
-  uint64_t restarts_ = 0;         // of the numbering after run_again()
 };
 
 } // namespace dermis::tools
