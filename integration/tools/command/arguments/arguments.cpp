@@ -82,6 +82,7 @@ std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
   CLI::App* verb = find_subcommand(app, argv[1], "", problem);
   if (verb == nullptr) return problem;
   int options_from = 2;
+  std::string verb_words = argv[1];
   const bool has_inner = !subcommands(*verb).empty();
   if (argc == 2 && has_inner)
     return fmt::format("'{}' requires a verb: {}; 'dermis {} --help' describes them", argv[1],
@@ -90,6 +91,7 @@ std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
     verb = find_subcommand(*verb, argv[2], argv[1], problem);
     if (verb == nullptr) return problem;
     options_from = 3;
+    verb_words += fmt::format(" {}", argv[2]);
   }
   for (int i = options_from; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string name(name_part(argv[i]));
@@ -111,8 +113,8 @@ std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
         names.push_back("--" + known);
     const std::vector<std::string_view> words(names.begin(), names.end());
     const std::string suggestion = did_you_mean(name, words);
-    return fmt::format("'{}' has no option '{}'; {}", argv[1], name,
-                       suggestion.empty() ? fmt::format("'dermis {} --help' lists them", argv[1])
+    return fmt::format("'{}' has no option '{}'; {}", verb_words, name,
+                       suggestion.empty() ? fmt::format("'dermis {} --help' lists them", verb_words)
                                           : suggestion);
   }
   return "";
