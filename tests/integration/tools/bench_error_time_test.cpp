@@ -69,8 +69,8 @@ TEST_F(BenchErrorTime, WritesARowPerSceneAndTechnique) {
   EXPECT_THAT(files("cache"), ::testing::SizeIs(3));
 }
 
-// Device times decide how many frames run per scene, and so would change the noise of the next
-// scene if it depended on them.
+// Device times decide how many frames run per scene. The noise of the next scene must not depend on
+// that number.
 TEST_F(BenchErrorTime, ErrorsDependOnNothingButTheScene) {
   const std::string file = bench_file("");
   ASSERT_EQ(run(arguments(file)).exit_code, 0);

@@ -36,7 +36,7 @@ struct Subject {
   CapturedFrame frame;
   double d_px = 0; // median over subsurface pixels of the widest channel's projected d
   FamilyMember member = {};
-  size_t number = 0; // among all scenes of the bench, for files
+  size_t number = 0; // among all scenes of the bench; for names of files and numbers of frames
 };
 
 struct SubjectOptions {

@@ -20,9 +20,8 @@
 namespace dermis::tools {
 namespace {
 
-// Exceeds the number of frames that a technique runs per subject. Each subject's first frame has a
-// multiple of it as number, so that noise depends neither on the device's speed nor on the scenes
-// that are selected.
+// More frames than a technique runs on one subject. The number of a subject's first frame is a
+// multiple of this, so that noise depends neither on the device's speed nor on --scenes.
 constexpr uint64_t frames_apart = uint64_t{1} << 20;
 constexpr std::string_view family_file = "tests/benchmark/family.json";
 
