@@ -32,12 +32,13 @@ const float max_squared_deviation =
     0.3; // maximum deviation of a logarithm that counts in this mean
 const float new_light_factor =
     0.5; // factor on alpha where light has just appeared that may not stay
+const float least_part = 0.1; // least part of the kernel on the surface that counts
 const float sample_noise = 0.4; // squared noise of a ratio, times the number of its samples
 // The same for young histories, of the ratio of one pixel and of the mean with those around it.
 const float single_noise = 0.9, averaged_noise = 0.05;
-// Factors on the estimated noise: inside a surface, and on one that ends nearby, where samples are
-// noisier. Smaller ones make light worse where the pyramid is right.
-const float inner_factor = 1.2, edge_factor = 1.5;
+// Factor on the estimated noise of a surface that ends nearby, where samples are noisier. Smaller
+// ones make light worse where the pyramid is right.
+const float edge_factor = 1.5;
 const float unknown_noise = 1e3; // squared noise of a ratio without neighbours
 // Maximum distance of a neighbour from the tangent plane, in pixel sides.
 const float plane_distance = 2.0;
@@ -72,7 +73,7 @@ float tolerance_around(previous_position place, sap_texel own) {
   return depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth));
 }
 
-// rgb: ratio, a: number of its samples.
+// rgb: ratio, a: number of its samples, each counted as the part of the kernel on the surface.
 vec4 ratio_before(history_taps taps) {
   vec4 sum = vec4(0.0);
   for (int i = 0; i < 4; ++i)
@@ -129,7 +130,7 @@ vec4 mean_ratio(vec4 ratio, previous_position place, sap_texel own) {
   }
   // A sixth of the mean square is a ratio's squared noise. Few squares may be small by chance.
   float variance = bends.y > 0.0 ? bends.x / (6.0 * bends.y) : unknown_noise;
-  variance *= inner ? inner_factor : edge_factor * (1.0 + 4.0 / max(bends.y, 1.0));
+  variance *= (inner ? 1.0 : edge_factor) * (1.0 + 4.0 / max(bends.y, 1.0));
   return vec4(sum.rgb / sum.a, variance / sum.a);
 }
 
@@ -197,21 +198,26 @@ void main() {
       uint index = (frame.view_frame >> 2) + (frame.view_frame & 3u) * 0x9e3779u;
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), index);
       vec3 own_light = pixel_light_of_level_0(surface_image, light_image, texel);
+      vec3 mass;
       vec3 sampled = sap_sampled_light(surface_image, light_image, pixel, own, own_light, offset,
-                                       count, settings.lod_bias);
+                                       count, settings.lod_bias, mass);
       vec3 found = clamp(sampled / max(light.rgb, vec3(min_light)), vec3(0.0), vec3(largest_kept));
       found = mix(vec3(1.0), found, greaterThan(light.rgb, vec3(min_light)));
-      float weight = max(alpha, float(count) / (ratio.a + float(count)));
+      // The mean of few samples is biased where a part of the kernel leaves the surface. With
+      // frames weighted by the part on the surface, the running mean is a ratio of sums, whose bias
+      // falls with the number of frames.
+      float part = clamp(residual_luminance(mass), least_part, 1.0), counted = part * float(count);
+      float weight = max(part * alpha, counted / (ratio.a + counted));
       ratio.rgb = mix(ratio.rgb, found, weight);
       kept.x = mix(kept.x, pattern, weight);
-      ratio.a = min(ratio.a + float(count), most);
+      ratio.a = min(ratio.a + counted, most);
     }
     float pattern_agreement =
         first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
     float fraction = sample_fraction(light.a, ratio.a, settings.sample_weight);
     bool averaged = fraction > 0.0 && !first && !lost && place.depth > 0.0;
     vec4 mean = averaged ? mean_ratio(ratio, place, own) : vec4(ratio.rgb, 0.0);
-    float beyond = part_beyond_noise(mean, ratio.a, averaged, ratio.a < 4.0 * n);
+    float beyond = part_beyond_noise(mean, ratio.a, averaged, ratio.a < 3.0 * n);
     light.rgb *= 1.0 + pattern_agreement * fraction * beyond *
                            (min(mean.rgb, vec3(largest_ratio)) - 1.0);
   }

@@ -106,8 +106,9 @@ vec3 sample_light(utexture2D surface, texture2D light, ivec2 q, vec2 at, sap_tex
 // Returns the self-normalised mean of `count` samples. Light within the direct radius is the
 // pixel's own light. Radii are stratified and angles are multiples of the golden angle; `offset`
 // shifts both, in units of 2^-32. `surface`, `light`: images of level 0. `own_light`: of the pixel.
+// `mass`: estimated part of the kernel that lies on the surface, with which the mean is normalised.
 vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_texel own,
-                       vec3 own_light, uvec2 offset, int count, float lod_bias) {
+                       vec3 own_light, uvec2 offset, int count, float lod_bias, out vec3 mass) {
   float ray_length;
   float footprints = sap_footprints(own, vec2(pixel), ray_length);
   scatter_profile profile = find_profile(own.id, sap_scale(own, footprints * ray_length));
@@ -124,7 +125,8 @@ vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_tex
   float pixels_per_sample = two_pi * beyond / (float(count) * footprint.x * footprint.y);
   float each = beyond / float(count);
   vec2 shift = unit_from_fixed(offset);
-  vec3 sum = direct * own_light, mass = direct;
+  vec3 sum = direct * own_light;
+  mass = direct;
   for (int i = 0; i < count; ++i) {
     radial_sample radial = profile_sample(profile, (float(i) + shift.x) / float(count) * beyond);
     float angle = float(i) * golden_angle + shift.y * two_pi;
@@ -151,6 +153,12 @@ vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_tex
   vec3 mean = mix(own_light, sum / max(mass, vec3(1e-30)), greaterThan(mass, vec3(1e-30)));
   mean = mix(own_light, mean, greaterThan(profile.d.rgb, vec3(0.0)));
   return mix(mean, own_light, profile_direct(own.id));
+}
+
+vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_texel own,
+                       vec3 own_light, uvec2 offset, int count, float lod_bias) {
+  vec3 mass;
+  return sap_sampled_light(surface, light, pixel, own, own_light, offset, count, lod_bias, mass);
 }
 
 #endif
