@@ -73,7 +73,7 @@ float tolerance_around(previous_position place, sap_texel own) {
   return depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth));
 }
 
-// rgb: ratio, a: number of its samples, each counted as the part of the kernel on the surface.
+// rgb: ratio, a: number of its samples, weighted by the part of the kernel on the surface.
 vec4 ratio_before(history_taps taps) {
   vec4 sum = vec4(0.0);
   for (int i = 0; i < 4; ++i)

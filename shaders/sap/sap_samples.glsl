@@ -155,6 +155,7 @@ vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_tex
   return mix(mean, own_light, profile_direct(own.id));
 }
 
+// The same, for callers that need no mass.
 vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_texel own,
                        vec3 own_light, uvec2 offset, int count, float lod_bias) {
   vec3 mass;
