@@ -385,7 +385,7 @@ dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compile
       fault != subsurface::CameraFault::none)
     return bad_argument(log, "{}: {}{}", function, subsurface::text_of(fault), hint_of(fault));
   checked.constants.sample_units = chosen.sample_units;
-  checked.constants.view_frame = static_cast<uint32_t>(view.frames + 1);
+  checked.constants.view_frame = (reset ? 0 : view.frames) + 1;
   if (chosen.probed) checked.constants.flags |= subsurface::always_probed;
   checked.input.command_buffer = frame.command_buffer;
   checked.input.images = compiled_graph.images;

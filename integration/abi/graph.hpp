@@ -36,11 +36,12 @@ struct dermis_view_t {
   std::array<std::shared_ptr<dermis::abi::CompiledGraph>, dermis::vulkan::max_frames_in_flight + 1>
       retired;
   uint64_t last_frame = 0;
-  uint64_t frames = 0; // recorded and not discarded
+  uint32_t frames = 0; // recorded since the last cut, with its frame, and not discarded
   // State before the last record, until that is discarded or another frame is recorded.
   struct Recorded {
     bool known = false;
     uint64_t last_frame = 0; // of the view
+    uint32_t frames = 0;     // of the view
     bool took_over = false;  // a new compiled graph, formerly `next`, took over
     // index of the previous compiled graph in `retired`; retired.size(): not stored
     size_t retired = 0;

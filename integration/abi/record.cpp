@@ -79,7 +79,7 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
       view.running = std::move(view.retired[recorded.retired]);
   }
   view.last_frame = recorded.last_frame;
-  --view.frames;
+  view.frames = recorded.frames;
   recorded = {};
   return DERMIS_OK;
 }
@@ -145,6 +145,7 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
   view.recorded = {};
   view.recorded.known = true;
   view.recorded.last_frame = view.last_frame;
+  view.recorded.frames = view.frames;
   view.recorded.compiled_graph_last_frame = compiled_graph.last_frame;
   view.recorded.last_jitter_px = jitter_before;
   view.recorded.configuration = compiled_graph.configuration;
@@ -160,7 +161,7 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
   compiled_graph.plans[plan].recorded = true;
   remember(view.chooser, chosen);
   view.last_frame = frame.frame_index;
-  ++view.frames;
+  view.frames = checked.constants.view_frame;
   take_over(view);
   return DERMIS_OK;
 }

@@ -109,7 +109,7 @@ struct FrameConstants {
   int32_t previous_rect[4];
   float previous_jitter[2]; // pixels
   uint32_t sample_units;    // units that subsurface.allocate_samples may spend
-  uint32_t view_frame;      // number of frames of the view, with this one; low 32 bits
+  uint32_t view_frame;      // number of frames of the view since the last cut, with this one
   // x, y, width, height of the area that may have subsurface, relative to the rectangle's corner
   // and inside the rectangle
   int32_t bounds[4];

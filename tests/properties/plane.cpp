@@ -188,6 +188,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
       // The graph has written scattered light there.
       if (i > 0) upload("lighting", uploads.light, 3);
       (*device)->skip_to(1 + uint64_t{i} * plane.frame_step);
+      frame.flags = i + 1 == plane.cut_frame ? DERMIS_FRAME_RESET_HISTORY : 0;
       const auto ran = (*device)->run(frame);
       EXPECT_TRUE(ran) << ran.error().text;
       auto pixels = (*device)->read_rgb("scattered_light");

@@ -173,6 +173,16 @@ TEST_F(Refined, FrameIndices_MayAdvanceByAnyNumber) {
     EXPECT_EQ(found[i].rgb, expected[i].rgb) << i;
 }
 
+// Frames after a cut do not depend on the number of frames before it.
+TEST_F(Refined, Cut_StartsTheSequenceAgain) {
+  Plane plane = grooves(64, 64);
+  plane.cut_frame = 4;
+  const std::vector<Picture> found = frames_of("sap_residual", plane, 6);
+  ASSERT_EQ(found.size(), 6u);
+  for (size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(found[i + 3].rgb, found[i].rgb) << i;
+}
+
 // The change of light is measured in a part of the tiles of a large view, here in every second one,
 // which must not be a column without subsurface.
 TEST_F(Refined, LargeViews_AreSampledInAllColumns) {

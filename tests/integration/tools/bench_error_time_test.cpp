@@ -82,6 +82,20 @@ TEST_F(BenchErrorTime, ErrorsDependOnNothingButTheScene) {
   EXPECT_THAT(errors(), ElementsAre(all[4], all[5]));
 }
 
+// Scenes share a graph, whose samples follow a sequence of frames.
+TEST_F(BenchErrorTime, FramesOfEarlierScenesDoNotMatter) {
+  std::vector<std::string> arguments = {
+      "bench",   "error-time",  "--family", "--quick", "--csv",        path("out.csv"),
+      "--cache", path("cache"), "--frames", "6",       "--techniques", "sap_residual"};
+  arguments.insert(arguments.end(), {"--scenes", "fold,wave"});
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  const std::vector<std::string> all = errors();
+  ASSERT_GT(all.size(), 1u);
+  arguments.back() = "wave";
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  EXPECT_EQ(errors().front(), all[1]);
+}
+
 TEST_F(BenchErrorTime, ErrorsAreEqualWithAndWithoutTheCache) {
   const std::string file = bench_file("");
   ASSERT_EQ(run(arguments(file)).exit_code, 0);
@@ -126,6 +140,16 @@ TEST_F(BenchErrorTime, ShippedFileIsValid) {
   ASSERT_THAT(run({"bench", "error-time", "--scenes", "edge", "--techniques", "burley", "--size",
                    "16x16", "--csv", "-", "--cache", "", "--study"}),
               Succeeds(::testing::StartsWith("scene,d_px,framing")));
+}
+
+TEST_F(BenchErrorTime, MissingGraphs_AreNamed) {
+  const std::string file = write("missing.json", R"({
+      "dermis_benchmark": 1, "repetitions": 1, "warm_up": 1, "subset": 64, "skin": "configs/profiles/skin.json",
+      "baseline": { "technique": "a", "setting": "" },
+      "self": { "setting": "samples", "samples": 64, "scenes": [] },
+      "scenes": [ { "scene": "edge", "framing": "close", "d_px": [2] } ],
+      "techniques": [ { "technique": "a", "setting": "", "graph": "configs/graphs/none.json" } ] })");
+  EXPECT_THAT(run(arguments(file)), FailsWith(1, "do not exist: configs/graphs/none.json"));
 }
 
 TEST_F(BenchErrorTime, UnusableGraphOrSetting_IsReported) {

@@ -253,7 +253,7 @@ demo::Result<> measure_dynamic(SuiteRun& run, const Emit<DynamicRow>& emit) {
     if (run.is_requested("scenes", request.scene) && run.is_requested("framings", request.framing))
       if (auto done = measure_sequence(bench, request); !done) return done;
   }
-  if (bench.rows.empty()) return none_selected("scene", std::move(known));
+  if (bench.rows.empty()) return no_scene_selected(std::move(known));
   run.add_info("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
   run.add_info("truth", fmt::format("at {} stratified pixels a frame", file.subset));
   run.add_info("frames", fmt::format("counted from number {} of each sequence on", file.counted));

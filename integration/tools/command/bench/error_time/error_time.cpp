@@ -22,7 +22,7 @@ namespace {
 
 // More frames than a technique runs on one subject. The number of a subject's first frame is a
 // multiple of this, so that noise depends neither on the device's speed nor on --scenes.
-// `sap_residual` counts the frames of its view instead, so its noise depends on both.
+// `sap_residual` counts the frames since the last cut instead, and each subject begins with one.
 constexpr uint64_t frames_apart = uint64_t{1} << 20;
 constexpr std::string_view family_file = "tests/benchmark/family.json";
 

@@ -166,7 +166,7 @@ demo::Result<std::vector<SceneRequest>> select_scenes(SuiteRun& run, const Resti
     else
       run.add_note(fmt::format("scene {}: {}", scene.scene, reason));
   }
-  if (scenes.empty()) return none_selected("scene", std::move(known));
+  if (scenes.empty()) return no_scene_selected(std::move(known));
   return scenes;
 }
 

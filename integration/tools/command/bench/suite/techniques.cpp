@@ -6,6 +6,16 @@
 #include <filesystem>
 
 namespace dermis::tools {
+namespace {
+
+// Without duplicates.
+std::string sorted_list(std::vector<std::string> words) {
+  std::sort(words.begin(), words.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
+  return format_list(words);
+}
+
+} // namespace
 
 std::string name_of(const TechniqueRequest& technique) {
   return fmt::format("{} {}", technique.technique, technique.setting);
@@ -25,11 +35,14 @@ bool is_one_of_few(std::string_view technique) {
   return std::find(std::begin(few), std::end(few), technique) != std::end(few);
 }
 
-demo::Error none_selected(std::string_view kind, std::vector<std::string> known) {
-  std::sort(known.begin(), known.end());
-  known.erase(std::unique(known.begin(), known.end()), known.end());
+demo::Error no_scene_selected(std::vector<std::string> known) {
   return {demo::ErrorKind::usage,
-          fmt::format("no {} is selected; available: {}", kind, format_list(known))};
+          fmt::format("no scene is selected; available: {}", sorted_list(std::move(known)))};
+}
+
+demo::Error no_graph_exists(std::vector<std::string> graphs) {
+  return {demo::ErrorKind::input, fmt::format("the graphs of the techniques do not exist: {}",
+                                              sorted_list(std::move(graphs)))};
 }
 
 demo::Result<> check_names(const SuiteRun& run, const std::string& option,
@@ -39,11 +52,9 @@ demo::Result<> check_names(const SuiteRun& run, const std::string& option,
     if (std::ranges::find(known, name) == known.end()) unknown.push_back("'" + name + "'");
   if (unknown.empty()) return demo::success();
   if (listed.empty()) listed = std::move(known);
-  std::sort(listed.begin(), listed.end());
-  listed.erase(std::unique(listed.begin(), listed.end()), listed.end());
   return demo::Error{demo::ErrorKind::usage,
                      fmt::format("--{}: unknown {}; available: {}", option, format_list(unknown),
-                                 format_list(listed))};
+                                 sorted_list(std::move(listed)))};
 }
 
 } // namespace dermis::tools

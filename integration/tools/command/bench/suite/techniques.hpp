@@ -17,8 +17,10 @@ std::string name_of(const TechniqueRequest& technique);
 bool is_usable(SuiteRun& run, const TechniqueRequest& technique);
 // Returns whether --quick measures the technique: one of each kind.
 bool is_one_of_few(std::string_view technique);
-// The usage error that lists what a file offers; `kind` is "technique" or "scene".
-demo::Error none_selected(std::string_view kind, std::vector<std::string> known);
+// The usage error that lists the scenes of a file.
+demo::Error no_scene_selected(std::vector<std::string> known);
+// The input error that none of these graphs exists.
+demo::Error no_graph_exists(std::vector<std::string> graphs);
 
 // Returns the usage error if a name of the option --`option` is not among `known`. The error lists
 // `listed`, or `known` if it is empty.
@@ -42,18 +44,19 @@ demo::Result<> check_techniques(const SuiteRun& run, const std::vector<Request>&
   return check_names(run, "techniques", std::move(known));
 }
 
-// Returns the usable techniques. Errors: usage (there is none, or a name is unknown).
+// Returns the usable techniques. Errors: usage (a name is unknown), input (no graph exists).
 template <class Request>
 demo::Result<std::vector<Request>> select_techniques(SuiteRun& run,
                                                      const std::vector<Request>& all) {
   std::vector<Request> selected;
-  std::vector<std::string> known;
+  std::vector<std::string> missing;
   if (auto good = check_techniques(run, all); !good) return good.error();
-  for (const Request& one : all) {
-    known.push_back(one.technique);
-    if (is_usable(run, one)) selected.push_back(one);
-  }
-  if (selected.empty()) return none_selected("technique", std::move(known));
+  for (const Request& one : all)
+    if (is_usable(run, one))
+      selected.push_back(one);
+    else if (run.is_requested("techniques", one.technique))
+      missing.push_back(one.graph);
+  if (selected.empty()) return no_graph_exists(std::move(missing));
   return selected;
 }
 
