@@ -24,6 +24,7 @@ struct DispatchRule {
   uint32_t cells_per_group = 1; // more than 1: groups in one dimension, cells in row order
   uint32_t invocations = 64;    // per group; not checked for `one`
   uint32_t border = 0;          // pixels or texels that extend the domain, both sides together
+  uint32_t max_groups = 0;      // 0: no limit; needs cells_per_group > 1
 
   constexpr bool is_kernel() const { return domain != Domain::none && domain != Domain::host; }
   // A group with one invocation per pixel of its cell has the cell's shape.
@@ -49,7 +50,8 @@ constexpr GroupCount group_count(const DispatchRule& rule, uint64_t width, uint6
     const uint64_t columns = ceil_div(width + rule.border, rule.cell_side),
                    rows = ceil_div(height + rule.border, rule.cell_side);
     if (rule.cells_per_group == 1) return {columns, rows, 1};
-    return {ceil_div(columns * rows, rule.cells_per_group), 1, 1};
+    const uint64_t groups = ceil_div(columns * rows, rule.cells_per_group);
+    return {rule.max_groups > 0 ? std::min<uint64_t>(groups, rule.max_groups) : groups, 1, 1};
   }
   case DispatchRule::Domain::one:
     return {1, 1, 1};

@@ -42,6 +42,7 @@ struct GraphWriter {
     number(rule.cells_per_group);
     number(rule.invocations);
     number(rule.border);
+    number(rule.max_groups);
   }
 
   void setting(const SettingDeclaration& setting) {

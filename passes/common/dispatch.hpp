@@ -24,6 +24,15 @@ inline constexpr DispatchRule over_tile_runs{.name = "over_tile_runs",
                                              .cell_side = tile_side,
                                              .cells_per_group = tiles_per_run_group,
                                              .invocations = 128};
+// One group per run of 64 tiles in which subsurface.probe may select a tile.
+inline constexpr uint32_t max_probes = 32; // probed tiles per frame
+constexpr DispatchRule over_probed_tiles(uint32_t invocations) {
+  return {.name = "probed_tiles",
+          .cell_side = tile_side,
+          .cells_per_group = 64,
+          .invocations = invocations,
+          .max_groups = max_probes};
+}
 // One group per tile of level 4 of the surface-aware pyramid, whose border has one texel of 16
 // pixels on each side.
 inline constexpr DispatchRule over_tile_regions{

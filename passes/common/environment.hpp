@@ -6,6 +6,7 @@
 #include "framegraph/model/graph.hpp"
 #include "framegraph/model/pixel_grid.hpp"
 #include "passes/common/camera.hpp"
+#include "passes/common/dispatch.hpp"
 #include "passes/common/profiles/profile.hpp"
 #include "passes/common/profiles/radial_table.hpp"
 #include "passes/separable/separable_kernel.hpp"
@@ -28,8 +29,6 @@ enum class EnvironmentSlot : uint32_t {
   counters = 6,
   count = 7
 };
-
-inline constexpr size_t max_probes = 32; // probed tiles per frame
 
 // Counters of a frame, as words of the counters binding. subsurface.classify writes them unless
 // noted otherwise.

@@ -269,7 +269,7 @@ const PassType sap_gather_probed_type{
            "settings selects. Elsewhere 'scattered' is undefined.",
     .ports = gather_probed_ports,
     .settings = gather_probed_settings,
-    .dispatch = over_tile_grid,
+    .dispatch = over_probed_tiles(64),
 };
 
 const PassType sap_setup_half_res_type{

@@ -1,5 +1,6 @@
 // Selects the tiles in which the error is estimated. The tiles of the render rectangle are divided
-// into runs of 64; every n-th run, from a random start, provides one of its tiles with subsurface.
+// into runs of 64. If there are more runs than tiles to select, every n-th run counts, from a random
+// start. A run provides one of its tiles with subsurface.
 // All kernels that include this file select the same tiles in a frame.
 #ifndef DERMIS_PROBED_TILE_GLSL
 #define DERMIS_PROBED_TILE_GLSL
@@ -28,19 +29,20 @@ bool is_frame_probed(int interval) {
          unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 7u))).x * float(interval) < 1.0;
 }
 
-// Finds the probed tile of run gl_WorkGroupID.x; a frame has up to `tiles` of them. Returns false
-// if the run has none. All invocations of the group, at least 64, call the function.
+// Finds the probed tile of the group; a frame has up to `tiles` of them. Returns false if the group
+// has none. All invocations of the group, at least 64, call the function.
 bool find_probed_tile(int tiles, int interval, out probed_tile found) {
-  uint lane = gl_LocalInvocationIndex, run = gl_WorkGroupID.x, runs = gl_NumWorkGroups.x;
+  uint lane = gl_LocalInvocationIndex, number = gl_WorkGroupID.x;
+  uint runs = (uint(frame.tiles.x * frame.tiles.y) + run_tiles - 1u) / run_tiles;
   found = probed_tile(0, 0.0);
-  if (!is_frame_probed(interval))
+  if (number >= min(uint(tiles), runs) || !is_frame_probed(interval))
     return false;
-  // Fraction of the runs that are selected, which is the probability of selecting this run.
-  float fraction = min(float(tiles) / float(runs), 1.0);
+  // Every run is selected with the same probability.
+  float runs_per_tile = max(float(runs) / float(tiles), 1.0);
   float start = unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 0u))).x;
-  if (fraction < 1.0 &&
-      floor((float(run) + 1.0) * fraction + start) <= floor(float(run) * fraction + start))
-    return false;
+  uint run = runs_per_tile > 1.0
+                 ? min(uint((float(number) + start) * runs_per_tile), runs - 1u)
+                 : number;
   if (lane < run_tiles) {
     uint tile = run * run_tiles + lane;
     listed[lane] = tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(class_at(int(tile)))
@@ -59,7 +61,7 @@ bool find_probed_tile(int tiles, int interval, out probed_tile found) {
     return false;
   uvec3 random_bits = pcg3d(uvec3(frame.frame_index, run, 1u));
   uint place = min(uint(unit_from_hash(random_bits).x * float(count)), count - 1u);
-  found = probed_tile(int(listed[place]), float(count) / fraction);
+  found = probed_tile(int(listed[place]), float(count) * runs_per_tile);
   return true;
 }
 

@@ -28,6 +28,11 @@ TEST(DispatchRuleTest, SeveralCellsPerGroup_DispatchInOneDimension) {
   expect_groups({.cells_per_group = 64}, 7680, 4320, 8100, 1);
 }
 
+TEST(DispatchRuleTest, GroupsCanBeLimited) {
+  expect_groups({.cells_per_group = 64, .max_groups = 32}, 7680, 4320, 32, 1);
+  expect_groups({.cells_per_group = 64, .max_groups = 32}, 65, 64, 2, 1);
+}
+
 TEST(DispatchRuleTest, BorderExtendsTheDomain) {
   expect_groups({.cell_side = 128, .border = 32}, 96, 97, 1, 2);
   expect_groups({.cell_side = 128, .border = 32}, 2560, 1440, 21, 12);

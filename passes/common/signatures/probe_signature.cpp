@@ -6,9 +6,6 @@ namespace dermis::subsurface {
 
 namespace {
 
-// One group per run of 64 tiles of the render rectangle, row by row.
-constexpr DispatchRule probed_tiles{
-    .name = "probed_tiles", .cell_side = tile_side, .cells_per_group = 64, .invocations = 128};
 constexpr auto probe_ports =
     join(port::at_few_texels(std::array{
              port::optional(port::sampled(
@@ -29,13 +26,14 @@ constexpr PassTypeSetting probe_settings[] = {
 const PassType probe_type{
     .name = "subsurface.probe",
     .shader = "common/subsurface_probe",
-    .doc = "Estimates the frame's error and its uncertainty at pixels of a few tiles, sampled with "
-           "known probabilities: compares with four independent estimates of 256 samples each. Does "
-           "the same for the light before scattering and for subsurface.separable with 25 taps, so "
-           "that a choice knows the error of both although they do not run.",
+    .doc =
+        "Estimates the frame's error and its uncertainty at pixels of a few tiles, sampled with "
+        "known probabilities: compares with four independent estimates of 256 samples each. Does "
+        "the same for the light before scattering and for subsurface.separable with 25 taps, so "
+        "that a choice knows the error of both although they do not run.",
     .ports = probe_ports,
     .settings = probe_settings,
-    .dispatch = probed_tiles,
+    .dispatch = over_probed_tiles(128),
     .side_effects = true, // reports to the host
 };
 

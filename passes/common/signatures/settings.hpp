@@ -3,6 +3,7 @@
 // others.
 
 #include "framegraph/model/pass_type.hpp"
+#include "passes/common/dispatch.hpp"
 
 namespace dermis::subsurface::setting {
 
@@ -71,7 +72,7 @@ inline constexpr PassTypeSetting result = choice(
 
 // Tiles in which the error is estimated.
 inline constexpr PassTypeSetting probed_tiles =
-    integer("tiles", 8, 1, 32, "tiles",
+    integer("tiles", 8, 1, max_probes, "tiles",
             "number of tiles per probed frame; the error is estimated at four pixels of each tile");
 inline constexpr PassTypeSetting probe_interval =
     integer("interval", 1, 1, 256, "frames",

@@ -149,6 +149,42 @@ TEST_F(Probe, MeanOverFramesIsThePicturesError) {
   EXPECT_LT(deviation, 0.2 * exact); // Otherwise the comparison means nothing.
 }
 
+// A view whose rows of tiles are runs of tiles, of which a frame probes some.
+TEST_F(Probe, EveryPartOfALargeView_IsProbedAsOften) {
+  constexpr uint32_t width = 512, height = 256, rows = height / 8;
+  GraphOptions options = shipped_options("configs/graphs/skin.json");
+  options.width = width;
+  options.height = height;
+  graph = make_graph(options);
+  set("technique", "\"off\"");
+  set("probe", "\"on\"");
+  set("probe_interval", "1");
+  set("probe_tiles", "5");
+  make_images(graph);
+  const auto mean_square = [&](const std::function<float(uint32_t row)>& amplitude, int frames) {
+    fill("lighting", [&](uint32_t x, uint32_t y) {
+      return 0.5f + (2.0f * checks(x, y) - 1) * amplitude(y / 8);
+    });
+    double mean = 0;
+    for (int i = 0; i < frames; ++i) {
+      dermis_frame one = bound_frame(graph, width, height);
+      const demo::ReportedFrame shown = record_and_read(graph, one);
+      EXPECT_EQ(shown.probed_tiles, 5u);
+      mean += std::pow(double(shown.probed_rmse), 2) / frames;
+    }
+    return mean;
+  };
+  const double even = mean_square([](uint32_t) { return 0.5f; }, 4);
+  constexpr int frames = 64;
+  for (const uint32_t bright : {0u, rows - 1}) { // 5 of 32 rows, of which one counts
+    const double part =
+        mean_square([=](uint32_t row) { return row == bright ? 0.5f : 0.0f; }, frames);
+    EXPECT_NEAR(part / even, 1.0 / rows, 0.024) << bright; // 2.6 standard deviations
+  }
+  const auto rising = [](uint32_t row) { return std::sqrt(float(row) / rows) / 2; };
+  EXPECT_NEAR(mean_square(rising, frames) / even, 0.5, 0.02);
+}
+
 TEST_F(Probe, MeasuredErrorCorrectsTheExpectedError) {
   make("\"off\"", false);
   run_frame(checks);

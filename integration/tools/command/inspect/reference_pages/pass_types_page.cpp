@@ -11,12 +11,13 @@ std::string dispatch_text(const DispatchRule& rule) {
   const std::string cell = fmt::format("{0}x{0}", rule.cell_side);
   const std::string border =
       rule.border > 0 ? fmt::format(", which is extended by {} pixels", rule.border) : "";
+  const std::string limit = rule.max_groups > 0 ? fmt::format(", at most {}", rule.max_groups) : "";
   switch (rule.domain) {
   case DispatchRule::Domain::rectangle:
     return rule.cells_per_group == 1
                ? fmt::format("one group per {} pixels of the render rectangle{}", cell, border)
-               : fmt::format("one group per {} squares of {} pixels of the render rectangle{}",
-                             rule.cells_per_group, cell, border);
+               : fmt::format("one group per {} squares of {} pixels of the render rectangle{}{}",
+                             rule.cells_per_group, cell, border, limit);
   case DispatchRule::Domain::written_image:
     return fmt::format("one group per {} texels of the first image that it writes", cell);
   case DispatchRule::Domain::indirect:
