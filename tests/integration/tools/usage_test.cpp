@@ -44,6 +44,8 @@ TEST_F(Usage, MisspeltVerb_SuggestsTheNearest) {
 TEST_F(Usage, MisspeltOption_SuggestsTheNearestFirst) {
   EXPECT_THAT(run({"apply", "--grph", burley}),
               FailsWith(2, "'apply' has no option '--grph'; did you mean '--graph'?"));
+  EXPECT_THAT(run({"render", "--nope"}),
+              FailsWith(2, "'render' has no option '--nope'; 'dermis render --help' lists them"));
   EXPECT_THAT(run({"bench", "record", "--out", "x"}),
               FailsWith(2, "'bench record' has no option '--out'; 'dermis bench record --help'"));
 }

@@ -109,13 +109,13 @@ std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
     }
     std::vector<std::string> names;
     for (const CLI::Option* one : verb->get_options())
-      for (const std::string& known : one->get_lnames())
-        names.push_back("--" + known);
-    const std::vector<std::string_view> words(names.begin(), names.end());
-    const std::string suggestion = did_you_mean(name, words);
+      names.insert(names.end(), one->get_lnames().begin(), one->get_lnames().end());
+    // Without the dashes, which are equal in all and would make short names similar.
+    const std::string_view best =
+        nearest(name.substr(2), std::vector<std::string_view>(names.begin(), names.end()));
     return fmt::format("'{}' has no option '{}'; {}", verb_words, name,
-                       suggestion.empty() ? fmt::format("'dermis {} --help' lists them", verb_words)
-                                          : suggestion);
+                       best.empty() ? fmt::format("'dermis {} --help' lists them", verb_words)
+                                    : fmt::format("did you mean '--{}'?", best));
   }
   return "";
 }
