@@ -39,6 +39,10 @@ const float single_noise = 0.9, averaged_noise = 0.05;
 // Factor on the estimated noise of a surface that ends nearby, where samples are noisier. Smaller
 // ones make light worse where the pyramid is right.
 const float edge_factor = 1.5;
+// The same inside a surface, per pixel of d, and its range. Within a wide d ratios are alike, so
+// their differences are noise, and four of them may be small by chance. Within a small d they also
+// differ by themselves.
+const float inner_factor = 0.5, min_inner_factor = 1.2, max_inner_factor = 2.0;
 const float unknown_noise = 1e3; // squared noise of a ratio without neighbours
 // Maximum distance of a neighbour from the tangent plane, in pixel sides.
 const float plane_distance = 2.0;
@@ -130,7 +134,9 @@ vec4 mean_ratio(vec4 ratio, previous_position place, sap_texel own) {
   }
   // A sixth of the mean square is a ratio's squared noise. Few squares may be small by chance.
   float variance = bends.y > 0.0 ? bends.x / (6.0 * bends.y) : unknown_noise;
-  variance *= (inner ? 1.0 : edge_factor) * (1.0 + 4.0 / max(bends.y, 1.0));
+  float d_px = profiles[min(own.id, 255u)].d_mm.w * own.reach / sap_footprint(own.depth);
+  variance *= inner ? clamp(inner_factor * d_px, min_inner_factor, max_inner_factor)
+                    : edge_factor * (1.0 + 4.0 / max(bends.y, 1.0));
   return vec4(sum.rgb / sum.a, variance / sum.a);
 }
 
