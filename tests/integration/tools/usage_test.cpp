@@ -88,6 +88,7 @@ TEST_F(Usage, WrongValue_StatesWhatIsExpected) {
         "o"},
        "--debug, --budget, --calibration and --errors need a graph"},
       {{"explain", burley, "--frame", "--two-queues"}, "--two-queues excludes --frame"},
+      {{"bench", "error-time", "--family", "--size", "64x64"}, "--size excludes --family"},
       {{"watch", "scene.json", "--graph", "-", "--out", "o"},
        "standard input does not change; name a graph file to watch"},
       {{"bench", "all", "--out", "a", "more"},

@@ -49,6 +49,9 @@ void add_suite(CLI::App& bench, Invocation& invocation, const Suite& suite) {
           CLI::Option* added = add_suite_option(verb, option, request.options.at(option.name));
           if (option.quick) quick->excludes(added);
         }
+        for (const SuiteOption& option : suite.options)
+          if (!option.excludes.empty())
+            verb.get_option("--" + option.name)->excludes("--" + option.excludes);
         add_file(verb, "--json", request.json,
                  "Write the rows as JSON to this file, - for standard output");
         add_file(verb, "--csv", request.csv,

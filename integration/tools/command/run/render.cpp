@@ -257,9 +257,11 @@ ExitCode report(RenderRun& run) {
   } else {
     text += fmt::format("error of the scattered light: not measured, {}\n", no_error);
   }
+  const bool last_only = run.options.pictures == RenderOptions::Pictures::last && run.frames > 1;
+  const std::string written = last_only ? fmt::format("the last of {} frames is", run.frames)
+                                        : format_count(run.frames, "frame", true);
   say(run.session,
-      text + fmt::format("\n{} in {}\ndevice: {}\n", format_count(run.frames, "frame", true),
-                         run.options.out, run.info.device));
+      text + fmt::format("\n{} in {}\ndevice: {}\n", written, run.options.out, run.info.device));
   if (run.session.json) {
     JsonWriter answer;
     answer.open_object()

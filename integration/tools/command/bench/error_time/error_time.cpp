@@ -379,11 +379,12 @@ Suite error_time_suite() {
            "timestamps over all passes of a technique.",
        .options = {size_option({640, 360}),
                    head_option(),
-                   {"family",
-                    fmt::format("Measure the seeded family of scenes instead ({}); --scenes then "
-                                "also takes classes and halves",
-                                family_file),
-                    false},
+                   {.name = "family",
+                    .help = fmt::format("Measure the seeded family of scenes instead ({}), at "
+                                        "{}x{}; --scenes then also takes classes and halves",
+                                        family_file, family_width, family_height),
+                    .value = false,
+                    .excludes = "size"},
                    {"write-captures",
                     "Only write the scenes as a capture, for `apply` of another build", "", "DIR"},
                    {"pictures",

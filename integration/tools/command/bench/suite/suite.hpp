@@ -30,6 +30,7 @@ struct SuiteOption {
   std::string type = {}; // of text, for help: "FILE"; a list of "NAME" is separated by commas
   std::optional<OptionValue> quick = {};  // value with --quick, which then excludes the option
   uint64_t minimum = 0, maximum = 100000; // of a number
+  std::string excludes = {};              // name of an option; "": none
 };
 
 // Options that several suites share.
