@@ -36,7 +36,8 @@ struct dermis_view_t {
   std::array<std::shared_ptr<dermis::abi::CompiledGraph>, dermis::vulkan::max_frames_in_flight + 1>
       retired;
   uint64_t last_frame = 0;
-  uint32_t frames = 0; // recorded since the last cut, with its frame, and not discarded
+  // Recorded frames since the last cut, including the cut; discarded frames do not count.
+  uint32_t frames = 0;
   // State before the last record, until that is discarded or another frame is recorded.
   struct Recorded {
     bool known = false;

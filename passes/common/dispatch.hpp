@@ -24,8 +24,8 @@ inline constexpr DispatchRule over_tile_runs{.name = "over_tile_runs",
                                              .cell_side = tile_side,
                                              .cells_per_group = tiles_per_run_group,
                                              .invocations = 128};
-// One group per run of 64 tiles in which subsurface.probe may select a tile.
 inline constexpr uint32_t max_probes = 32; // probed tiles per frame
+// One group per tile that subsurface.probe can select: one in each run of 64 tiles, or max_probes.
 constexpr DispatchRule over_probed_tiles(uint32_t invocations) {
   return {.name = "probed_tiles",
           .cell_side = tile_side,

@@ -108,7 +108,7 @@ struct FrameConstants {
   int32_t previous_rect[4];
   float previous_jitter[2]; // pixels
   uint32_t sample_units;    // units that subsurface.allocate_samples may spend
-  uint32_t view_frame;      // number of frames of the view since the last cut, with this one
+  uint32_t view_frame;      // 1 in a cut, and one more in each further frame of the view
   // x, y, width, height of the area that may have subsurface, relative to the rectangle's corner
   // and inside the rectangle
   int32_t bounds[4];

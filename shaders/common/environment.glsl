@@ -26,7 +26,7 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   ivec4 previous_rect;
   vec2 previous_jitter; // pixels
   uint sample_units; // that subsurface.allocate_samples may spend
-  uint view_frame;   // number of frames of the view since the last cut, with this one
+  uint view_frame;   // 1 in a cut, and one more in each further frame of the view
   // x, y, width, height of the area that may have subsurface, from the rectangle's corner
   ivec4 bounds;
   // Rows of M: view position (mm) = M * (world position in the host's units, 1).

@@ -1,6 +1,6 @@
 // Selects the tiles in which the error is estimated. The tiles of the render rectangle are divided
-// into runs of 64. If there are more runs than tiles to select, every n-th run counts, from a random
-// start. A run provides one of its tiles with subsurface.
+// into runs of 64, each of which provides one of its tiles with subsurface. If there are more runs
+// than tiles to select, the frame uses every n-th run, from a random start.
 // All kernels that include this file select the same tiles in a frame.
 #ifndef DERMIS_PROBED_TILE_GLSL
 #define DERMIS_PROBED_TILE_GLSL

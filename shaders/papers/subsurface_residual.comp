@@ -39,9 +39,9 @@ const float single_noise = 0.9, averaged_noise = 0.05;
 // Factor on the estimated noise of a surface that ends nearby, where samples are noisier. Smaller
 // ones make light worse where the pyramid is right.
 const float edge_factor = 1.5;
-// The same inside a surface, per pixel of d, and its range. Within a wide d ratios are alike, so
-// their differences are noise, and four of them may be small by chance. Within a small d they also
-// differ by themselves.
+// Inside a surface the factor is inner_factor * d in pixels, within this range. If d is wide, the
+// true ratios of neighbours are alike, so their differences are noise, and four of them may be
+// small by chance. If d is small, the true ratios differ, too, and the noise is overestimated.
 const float inner_factor = 0.5, min_inner_factor = 1.2, max_inner_factor = 2.0;
 const float unknown_noise = 1e3; // squared noise of a ratio without neighbours
 // Maximum distance of a neighbour from the tangent plane, in pixel sides.

@@ -38,7 +38,7 @@ struct Plane {
   // Empty: neither thickness nor back lighting is bound. Back lighting is 1.
   std::function<float(int x, int y)> thickness_m = {};
   uint32_t frame_step = 1;  // Difference of the indices of two frames.
-  uint32_t cut_frame = 0;   // Number of the frame before which histories are reset; 0: none.
+  uint32_t cut_frame = 0;   // Number, from 1, of the frame that resets histories; 0: none.
   std::string overlay = {}; // Name in configs/overlays/ without .json; "": none.
   // Text of a profile for both ids, in place of d_px; "": Burley with d_px.
   std::string profile_file = {};

@@ -149,7 +149,7 @@ TEST_F(Probe, MeanOverFramesIsThePicturesError) {
   EXPECT_LT(deviation, 0.2 * exact); // Otherwise the comparison means nothing.
 }
 
-// A view whose rows of tiles are runs of tiles, of which a frame probes some.
+// The view is 64 tiles wide, so each of its 32 rows of tiles is a run; a frame probes five of them.
 TEST_F(Probe, EveryPartOfALargeView_IsProbedAsOften) {
   constexpr uint32_t width = 512, height = 256, rows = height / 8;
   GraphOptions options = shipped_options("configs/graphs/skin.json");
@@ -176,7 +176,7 @@ TEST_F(Probe, EveryPartOfALargeView_IsProbedAsOften) {
   };
   const double even = mean_square([](uint32_t) { return 0.5f; }, 4);
   constexpr int frames = 64;
-  for (const uint32_t bright : {0u, rows - 1}) { // 5 of 32 rows, of which one counts
+  for (const uint32_t bright : {0u, rows - 1}) { // Only this row has an error.
     const double part =
         mean_square([=](uint32_t row) { return row == bright ? 0.5f : 0.0f; }, frames);
     EXPECT_NEAR(part / even, 1.0 / rows, 0.024) << bright; // 2.6 standard deviations

@@ -82,7 +82,7 @@ TEST_F(BenchErrorTime, ErrorsDependOnNothingButTheScene) {
   EXPECT_THAT(errors(), ElementsAre(all[4], all[5]));
 }
 
-// Scenes share a graph, whose samples follow a sequence of frames.
+// Scenes share a graph. Its sequence of samples must start again with each scene.
 TEST_F(BenchErrorTime, FramesOfEarlierScenesDoNotMatter) {
   std::vector<std::string> arguments = {
       "bench",   "error-time",  "--family", "--quick", "--csv",        path("out.csv"),
